@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// The thin shell: membrane (Baraff-Witkin, area-normalised, with Poisson coupling; or St Venant-Kirchhoff) and
+// discrete-hinge bending (Grinspun et al. 2003) with exact derivatives.
+#ifndef RUGA_SHELL_SHELL_H
+#define RUGA_SHELL_SHELL_H
+
+#include "core/sparse.h"
+#include "mesh/connectivity.h"
+#include "mesh/mesh.h"
+
+typedef struct ruga_shell ruga_shell;
+
+// Per-triangle material allowed: arrays [F], or NULL to use the skin's single value (later: skins that vary).
+typedef struct ruga_shell_material {
+    ruga_skin_def skin;
+    const double* thickness; // [F] m, or NULL
+    const double* young;     // [F] Pa, or NULL
+} ruga_shell_material;
+
+ruga_status ruga_shell_create(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                              const ruga_shell_material* material, ruga_shell** shell);
+void ruga_shell_destroy(ruga_shell** shell);
+
+// Pattern of the Hessian: lower triangle, 3 x 3 blocks over the vertices, for triangles and hinges.
+const ruga_sparse* ruga_shell_pattern(const ruga_shell* shell);
+
+typedef struct ruga_shell_energies {
+    double membrane, bending; // J
+    double force_square;      // sum over triangles and hinges of squared nodal forces, N^2
+} ruga_shell_energies;
+
+// Energy at x [V][3]; gradient [V][3] (= minus force) and hessian (values of the pattern) are SET where not
+// NULL. clamp in [0, 1]: 0 = the exact Hessian; otherwise the geometric stiffness of compressive principal
+// membrane stress is multiplied by (1 - clamp), and a hinge's Hessian is clamp * Gauss-Newton + (1 - clamp) * exact.
+// With clamp = 1 the Hessian is positive semi-definite.
+ruga_status ruga_shell_energy(const ruga_shell* shell, const double* x, double clamp,
+                              ruga_shell_energies* energies, double* gradient, double* hessian);
+
+// Lumped mass of each vertex, kg, [V].
+void ruga_shell_vertex_mass(const ruga_shell* shell, double* mass);
+
+// Paper eq. 3 in m, and (1/4) (3 E*_q / E*_x)^(2/3), E* = E / (1 - nu^2).
+double ruga_wrinkle_wavelength(const ruga_skin_def* skin, const ruga_interior_def* interior);
+double ruga_wrinkle_critical_strain(const ruga_skin_def* skin, const ruga_interior_def* interior);
+// h sqrt(strain / critical - 1) in m, 0 below critical.
+double ruga_wrinkle_amplitude(const ruga_skin_def* skin, const ruga_interior_def* interior, double strain);
+
+#endif

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+#include "tests/check.h"
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/sparse.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void error_sentence_is_kept_and_prefixed(void** state) {
+    (void)state;
+    assert_int_equal(ruga_fail(RUGA_IO, "no file %s", "a.obj"), RUGA_IO);
+    assert_int_equal(ruga_fail_prefix(RUGA_IO, "scene.yaml:%d", 3), RUGA_IO);
+    assert_string_equal(ruga_last_error(), "scene.yaml:3: no file a.obj");
+}
+
+static void byte_count_returns_to_zero(void** state) {
+    (void)state;
+    double* a = NULL;
+    assert_ok(RUGA_NEW_ZERO(a, 1000));
+    assert_int_equal(ruga_byte_count(), 8000);
+    a = ruga_reallocate(a, 80000);
+    assert_non_null(a);
+    assert_true(a[999] == 0);
+    ruga_release(a);
+    assert_int_equal(ruga_byte_count(), 0);
+}
+
+static void* allocate_nothing(size_t size, void* context) {
+    (void)size;
+    (void)context;
+    return NULL;
+}
+
+static void failed_allocation_is_a_status(void** state) {
+    (void)state;
+    ruga_set_allocator(allocate_nothing, NULL, NULL);
+    double* a = NULL;
+    assert_status(RUGA_NEW(a, 10), RUGA_NO_MEMORY);
+    ruga_set_allocator(NULL, NULL, NULL);
+    assert_status(RUGA_NEW(a, SIZE_MAX), RUGA_NO_MEMORY);
+}
+
+static void square_indices(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    int* squares = context;
+    for (int i = begin; i < end; i++) {
+        squares[i] = i * i;
+    }
+}
+
+static void parallel_for_covers_the_range_once(void** state) {
+    (void)state;
+    int squares[1000];
+    for (int threads = 1; threads <= 4; threads++) {
+        memset(squares, 0, sizeof squares);
+        ruga_set_threads(threads);
+        ruga_parallel_for(1000, 7, square_indices, squares);
+        for (int i = 0; i < 1000; i++) {
+            assert_int_equal(squares[i], i * i);
+        }
+    }
+    ruga_set_threads(0);
+}
+
+static void pattern_from_pairs_is_sorted_without_repeats(void** state) {
+    (void)state;
+    const int pairs[][2] = {{0, 2}, {2, 0}, {1, 1}, {3, 1}, {2, 3}};
+    ruga_sparse a;
+    assert_ok(ruga_sparse_from_pairs(4, 2, 5, pairs, &a));
+    assert_int_equal(a.rows, 8);
+    for (int j = 0; j < 8; j++) {
+        assert_int_equal(a.index[a.start[j]], j);
+        for (int k = a.start[j] + 1; k < a.start[j + 1]; k++) {
+            assert_true(a.index[k] > a.index[k - 1]);
+        }
+    }
+    assert_true(ruga_sparse_find(&a, 5, 1) >= 0);
+    assert_true(ruga_sparse_find(&a, 3, 1) < 0);
+    assert_int_equal(a.start[8], 4 * 3 + 3 * 4);
+    ruga_sparse_clear(&a);
+}
+
+static void symmetric_product_equals_dense(void** state) {
+    (void)state;
+    const int pairs[][2] = {{0, 1}, {1, 2}};
+    ruga_sparse a;
+    assert_ok(ruga_sparse_from_pairs(3, 1, 2, pairs, &a));
+    const double values[] = {4, -1, 5, -2, 6}; // (0,0) (1,0) (1,1) (2,1) (2,2)
+    memcpy(a.value, values, sizeof values);
+    const double x[3] = {1, 2, 3};
+    double y[3];
+    ruga_sparse_multiply_symmetric(&a, x, y);
+    assert_near(y[0], 2, 0);
+    assert_near(y[1], 3, 0);
+    assert_near(y[2], 14, 0);
+    ruga_sparse_clear(&a);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(error_sentence_is_kept_and_prefixed),
+        cmocka_unit_test(byte_count_returns_to_zero),
+        cmocka_unit_test(failed_allocation_is_a_status),
+        cmocka_unit_test(parallel_for_covers_the_range_once),
+        cmocka_unit_test(pattern_from_pairs_is_sorted_without_repeats),
+        cmocka_unit_test(symmetric_product_equals_dense),
+    };
+    return cmocka_run_group_tests_name("core", tests, NULL, check_no_leak);
+}
