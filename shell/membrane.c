@@ -1,2 +1,205 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
+//
+// The deformation gradient of a triangle has the columns w_u, w_v: w_a = sum_i N_i,a x_i. Both energies are
+//   A { c/2 [e_u^2 + e_v^2 + 2 nu e_u e_v] + k/2 (w_u.w_v)^2 },  c = E h / (1 - nu^2),  k = E h / (2 (1 +
+//   nu)),
+// with e_a = |w_a| - 1 for Baraff & Witkin (1998; their stretch and shear conditions, normalised by area, and
+// a Poisson term), and e_a = (|w_a|^2 - 1) / 2 for St Venant-Kirchhoff: its shear strain is w_u.w_v / 2.
+//
+// The gradient with respect to w_a is sum_b S_ab w_b, S the second Piola stress, where
+//   S_aa = c (e_a + nu e_b) / m_a,  S_uv = k w_u.w_v,  m_a = |w_a| (Baraff-Witkin) or 1 (StVK).
+// With f_a = w_a / m_a = de_a/dw_a, the Hessian is
+//   S_ab I + c Q_ab f_a f_b^T + k g_a g_b^T,  g_u = w_v, g_v = w_u,  Q = [[1 - z S_uu/c, nu], [nu, 1 - z
+//   S_vv/c]],
+// z = 1 for Baraff-Witkin (the second derivative of |w| is (I - f f^T) / |w|) and 0 for StVK. Each of the
+// three terms is positive semi-definite if the 2 x 2 matrices S and Q are. Clamping scales the negative
+// eigenvalues of S by (1 - clamp), then those of the Q that follows from it: what is left at clamp = 1 is
+// positive semi-definite, and a fibre under compression keeps its exact stiffness c along itself.
+//
+// |w| has no derivative at 0. Below LENGTH_FLOOR the length is (|w|^2 / floor + floor) / 2, which continues
+// it with the same value and slope: the energy then has derivatives everywhere.
+#include "shell/membrane.h"
+
+#include "core/vec3.h"
+
+// Fibres are never this short in a sensible state; larger values would change results, smaller ones make a
+// collapsed triangle needlessly stiff sideways.
+static const double LENGTH_FLOOR = 1e-3;
+// A triangle whose height is this small a part of its longest edge has no area that means anything.
+static const double FLAT = 1e-10;
+// |n.x| above which the first direction is taken from z in place of x.
+static const double ALONG = 0.99;
+
+const int ruga_triangle_block_corner[RUGA_TRIANGLE_BLOCKS][2] = {{0, 0}, {1, 1}, {2, 2},
+                                                                 {1, 0}, {2, 0}, {2, 1}};
+
+// In-plane axes: u the x axis (z where x is nearly normal) projected to the plane, v = n x u. Returns the
+// area.
+static double plane_axes(const double* const x[3], double u[3], double v[3]) {
+    double n[3];
+    ruga_triangle_normal(x[0], x[1], x[2], n);
+    double area = 0.5 * ruga_normalize(n);
+    int axis = fabs(n[0]) > ALONG ? 2 : 0;
+    for (int c = 0; c < 3; c++) {
+        u[c] = (c == axis) - n[axis] * n[c];
+    }
+    ruga_normalize(u);
+    ruga_cross(n, u, v);
+    return area;
+}
+
+double ruga_membrane_grown_length(const double* const x[3], const double edge[3], const double growth[2]) {
+    double u[3], v[3];
+    (void)plane_axes(x, u, v);
+    return hypot(growth[0] * ruga_dot(edge, u), growth[1] * ruga_dot(edge, v));
+}
+
+double ruga_membrane_rest_create(const double* const x[3], const ruga_skin_def* skin, double thickness,
+                                 double young, ruga_membrane_rest* rest) {
+    double u[3], v[3], e1[3], e2[3];
+    double area = plane_axes(x, u, v);
+    double longest =
+        fmax(ruga_distance(x[0], x[1]), fmax(ruga_distance(x[1], x[2]), ruga_distance(x[2], x[0])));
+    if (!(2 * area > FLAT * longest * longest) || !isfinite(area)) {
+        return 0;
+    }
+    ruga_subtract(x[1], x[0], e1);
+    ruga_subtract(x[2], x[0], e2);
+    double u1 = skin->growth[0] * ruga_dot(e1, u), v1 = skin->growth[1] * ruga_dot(e1, v);
+    double u2 = skin->growth[0] * ruga_dot(e2, u), v2 = skin->growth[1] * ruga_dot(e2, v);
+    double determinant = u1 * v2 - u2 * v1;
+    area *= skin->growth[0] * skin->growth[1];
+    double nu = skin->poisson;
+    *rest = (ruga_membrane_rest){
+        .slope = {{v2 / determinant, -u2 / determinant}, {-v1 / determinant, u1 / determinant}},
+        .stretch = area * young * thickness / (1 - nu * nu),
+        .shear = area * young * thickness / (2 * (1 + nu)),
+    };
+    return area;
+}
+
+// The formulas of the file's head at one state; c and k times A.
+typedef struct point {
+    double w[2][3];
+    double f[2][3];
+    double z[2];      // 1 where -S_aa f_a f_a^T belongs to the Hessian
+    double stress[3]; // S_uu, S_uv, S_vv times A, J
+    double energy;
+} point;
+
+static void set_fibre(bool baraff_witkin, point* p, int a, double* strain, double* measure) {
+    double square = ruga_dot(p->w[a], p->w[a]);
+    *measure = 1;
+    p->z[a] = 0;
+    *strain = 0.5 * (square - 1);
+    if (baraff_witkin) {
+        double length = sqrt(square);
+        bool regular = length >= LENGTH_FLOOR;
+        *measure = regular ? length : LENGTH_FLOOR;
+        *strain = (regular ? length : 0.5 * (square / LENGTH_FLOOR + LENGTH_FLOOR)) - 1;
+        p->z[a] = regular;
+    }
+    for (int c = 0; c < 3; c++) {
+        p->f[a][c] = p->w[a][c] / *measure;
+    }
+}
+
+static void evaluate(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
+                     const double* const x[3], point* p) {
+    double e1[3], e2[3];
+    ruga_subtract(x[1], x[0], e1);
+    ruga_subtract(x[2], x[0], e2);
+    for (int a = 0; a < 2; a++) {
+        for (int c = 0; c < 3; c++) {
+            p->w[a][c] = rest->slope[0][a] * e1[c] + rest->slope[1][a] * e2[c];
+        }
+    }
+    double eu, ev, mu, mv;
+    set_fibre(kind == RUGA_MEMBRANE_BARAFF_WITKIN, p, 0, &eu, &mu);
+    set_fibre(kind == RUGA_MEMBRANE_BARAFF_WITKIN, p, 1, &ev, &mv);
+    double slant = ruga_dot(p->w[0], p->w[1]);
+    p->stress[0] = rest->stretch * (eu + poisson * ev) / mu;
+    p->stress[1] = rest->shear * slant;
+    p->stress[2] = rest->stretch * (ev + poisson * eu) / mv;
+    p->energy =
+        0.5 * (rest->stretch * (eu * eu + ev * ev + 2 * poisson * eu * ev) + rest->shear * slant * slant);
+}
+
+double ruga_membrane_energy(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
+                            const double* const x[3], double gradient[3][3]) {
+    point p;
+    evaluate(kind, poisson, rest, x, &p);
+    for (int c = 0; c < 3; c++) {
+        double pu = p.stress[0] * p.w[0][c] + p.stress[1] * p.w[1][c];
+        double pv = p.stress[1] * p.w[0][c] + p.stress[2] * p.w[1][c];
+        gradient[1][c] = rest->slope[0][0] * pu + rest->slope[0][1] * pv;
+        gradient[2][c] = rest->slope[1][0] * pu + rest->slope[1][1] * pv;
+        gradient[0][c] = -(gradient[1][c] + gradient[2][c]);
+    }
+    return p.energy;
+}
+
+// Multiplies the negative eigenvalues of [[a[0], a[1]], [a[1], a[2]]] by (1 - clamp). The projector on the
+// eigenvector of the smaller eigenvalue l2 is (l1 I - a) / (l1 - l2).
+static void scale_negative(double clamp, double a[3]) {
+    double mean = 0.5 * (a[0] + a[2]);
+    double radius = hypot(0.5 * (a[0] - a[2]), a[1]);
+    double l1 = mean + radius, l2 = mean - radius;
+    if (l2 >= 0) {
+        return;
+    }
+    if (l1 <= 0) {
+        a[0] *= 1 - clamp;
+        a[1] *= 1 - clamp;
+        a[2] *= 1 - clamp;
+        return;
+    }
+    double s = clamp * l2 / (l1 - l2);
+    a[0] -= s * (l1 - a[0]);
+    a[1] += s * a[1];
+    a[2] -= s * (l1 - a[2]);
+}
+
+void ruga_membrane_hessian(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
+                           const double* const x[3], double clamp, double block[RUGA_TRIANGLE_BLOCKS][9]) {
+    point p;
+    evaluate(kind, poisson, rest, x, &p);
+    double* s = p.stress;
+    scale_negative(clamp, s);
+    double q[3] = {rest->stretch - p.z[0] * s[0], rest->stretch * poisson, rest->stretch - p.z[1] * s[2]};
+    scale_negative(clamp, q);
+    // Derivatives of e_u, e_v and w_u.w_v with respect to each corner; `left` holds q times the first two and
+    // the shear stiffness times the last.
+    double n[3][2], right[3][3][3], left[3][3][3];
+    for (int a = 0; a < 2; a++) {
+        n[1][a] = rest->slope[0][a];
+        n[2][a] = rest->slope[1][a];
+        n[0][a] = -(n[1][a] + n[2][a]);
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int c = 0; c < 3; c++) {
+            double eu = n[i][0] * p.f[0][c], ev = n[i][1] * p.f[1][c];
+            right[i][0][c] = eu;
+            right[i][1][c] = ev;
+            right[i][2][c] = n[i][0] * p.w[1][c] + n[i][1] * p.w[0][c];
+            left[i][0][c] = q[0] * eu + q[1] * ev;
+            left[i][1][c] = q[1] * eu + q[2] * ev;
+            left[i][2][c] = rest->shear * right[i][2][c];
+        }
+    }
+    for (int b = 0; b < RUGA_TRIANGLE_BLOCKS; b++) {
+        int i = ruga_triangle_block_corner[b][0], j = ruga_triangle_block_corner[b][1];
+        for (int r = 0; r < 3; r++) {
+            for (int c = 0; c < 3; c++) {
+                block[b][3 * r + c] = left[i][0][r] * right[j][0][c] + left[i][1][r] * right[j][1][c] +
+                                      left[i][2][r] * right[j][2][c];
+            }
+        }
+        double geometric =
+            n[i][0] * (s[0] * n[j][0] + s[1] * n[j][1]) + n[i][1] * (s[1] * n[j][0] + s[2] * n[j][1]);
+        block[b][0] += geometric;
+        block[b][4] += geometric;
+        block[b][8] += geometric;
+    }
+}

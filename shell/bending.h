@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// The angle of a hinge, and its derivatives.
+#ifndef RUGA_SHELL_BENDING_H
+#define RUGA_SHELL_BENDING_H
+
+#include "shell/membrane.h"
+
+// Angle in (-pi, pi] between the two triangles of an interior edge, 0 when flat, positive where both turn
+// towards the side that their normals point to. x: start and end of the edge, the corner opposite it in the
+// triangle that runs start -> end, the corner opposite it in the other. `gradient` for these may be NULL.
+double ruga_hinge_angle(const double* const x[4], double gradient[4][3]);
+
+// a - b, brought to (-pi, pi].
+double ruga_angle_difference(double a, double b);
+
+// Adds to the lower blocks of a triangle's 9 x 9 matrix the sum over its edges of moment[i] times the part of
+// the Hessian of the angle at edge i (from corner i to corner i + 1) that this triangle brings.
+void ruga_hinge_add_hessian(const double* const x[3], const double moment[3],
+                            double block[RUGA_TRIANGLE_BLOCKS][9]);
+
+#endif
