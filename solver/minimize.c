@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// What the methods of the static solve share: the residual, the certificate, the cap of a step.
+#include "solver/skin.h"
+
+#include <math.h>
+
+double ruga_skin_residual(const ruga_skin* skin, const double* projected, const ruga_skin_terms* terms) {
+    return sqrt(ruga_dot_product(skin->n, projected, projected)) / terms->force_reference;
+}
+
+// The energy's curvature is known only nearby: half an edge is as far as a quadratic model may be trusted.
+ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d) {
+    double largest = ruga_largest_move(skin->n, d), cap = 0.5 * skin->model->mean_edge;
+    if (!isfinite(largest)) {
+        return ruga_fail(RUGA_LIBRARY, "the skin's linear system gave a result that is not finite");
+    }
+    for (int i = 0; i < skin->n && largest > cap; i++) {
+        d[i] *= cap / largest;
+    }
+    return RUGA_OK;
+}
+
+ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double* gradient, ruga_skin_result* result,
+                              bool* done) {
+    *done = true;
+    if (!certify) {
+        result->outcome = RUGA_OUTCOME_MINIMUM;
+        return RUGA_OK;
+    }
+    RUGA_TRY(ruga_skin_factor(skin, x, 0, 0));
+    if (skin->factor_right) {
+        result->outcome = RUGA_OUTCOME_MINIMUM;
+        return RUGA_OK;
+    }
+    bool moved;
+    RUGA_TRY(ruga_negative_curvature_step(skin, x, &result->terms, gradient, &moved));
+    if (!moved) {
+        result->outcome = RUGA_OUTCOME_SADDLE;
+        return RUGA_OK;
+    }
+    *done = false;
+    return RUGA_OK;
+}
+
+ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
+                               ruga_skin_result* result) {
+    *result = (ruga_skin_result){.outcome = RUGA_OUTCOME_NOT_CONVERGED};
+    switch (skin->model->solver.method) {
+    case RUGA_METHOD_PAPER:
+        return ruga_paper_minimize(skin, x, tolerance, result);
+    case RUGA_METHOD_NEWTON:
+        RUGA_TRY(ruga_skin_restore(skin, x));
+        RUGA_TRY(ruga_newton_minimize(skin, x, tolerance, certify, result));
+        break;
+    case RUGA_METHOD_DEFAULT:
+    case RUGA_METHOD_QUASI_NEWTON:
+        RUGA_TRY(ruga_skin_restore(skin, x));
+        RUGA_TRY(ruga_quasi_newton_minimize(skin, x, tolerance, certify, result));
+        break;
+    }
+    return RUGA_OK;
+}

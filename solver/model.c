@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// From a def to a model: checks every field, copies what it keeps, builds lattice, constraints and loads.
+#include "solver/model.h"
+
+#include "core/memory.h"
+#include "core/progress.h"
+#include "core/vec3.h"
+#include "mesh/doctor.h"
+#include "shell/shell.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- checks --------------------------------------------------------------------------------------------
+
+static ruga_status require(bool holds, const char* field, double value, const char* rule) {
+    return holds ? RUGA_OK : ruga_fail(RUGA_BAD_INPUT, "%s is %g; it must be %s", field, value, rule);
+}
+
+static bool positive(double value) {
+    return value > 0 && isfinite(value);
+}
+
+static ruga_status check_material(const ruga_model_def* def) {
+    const ruga_skin_def* s = &def->skin;
+    const ruga_interior_def* q = &def->interior;
+    RUGA_TRY(require(positive(s->thickness), "skin.thickness", s->thickness, "above 0"));
+    RUGA_TRY(require(positive(s->young), "skin.young", s->young, "above 0"));
+    RUGA_TRY(require(s->poisson > -1 && s->poisson < 0.5, "skin.poisson", s->poisson, "between -1 and 0.5"));
+    RUGA_TRY(require(s->density >= 0 && isfinite(s->density), "skin.density", s->density, "0 or above"));
+    for (int i = 0; i < 2; i++) {
+        RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
+    }
+    RUGA_TRY(require(s->motion == RUGA_SKIN_STATIC || positive(s->relaxation), "skin.relaxation", s->relaxation,
+                     "above 0"));
+    if (!def->has_interior) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(require(positive(q->young), "interior.young", q->young, "above 0"));
+    RUGA_TRY(require(q->poisson > -1 && q->poisson < 0.5, "interior.poisson", q->poisson, "between -1 and 0.5"));
+    RUGA_TRY(require(q->damping >= 0 && isfinite(q->damping), "interior.damping", q->damping, "0 or above"));
+    bool massive = q->motion != RUGA_INTERIOR_DYNAMIC || q->density > 0;
+    return require(massive && q->density >= 0 && isfinite(q->density), "interior.density", q->density,
+                   "above 0 (0 is allowed where the motion is not dynamic)");
+}
+
+static ruga_status check_numbers(const ruga_model_def* def) {
+    const ruga_coupling_def* c = &def->coupling;
+    RUGA_TRY(require(positive(def->step), "time.step", def->step, "above 0"));
+    RUGA_TRY(require(def->frames >= 1, "time.frames", def->frames, "1 or above"));
+    RUGA_TRY(require(positive(def->solver.tolerance) && def->solver.tolerance <= 0.1, "solver.tolerance",
+                     def->solver.tolerance, "above 0 and at most 0.1"));
+    RUGA_TRY(require(isfinite(ruga_norm(def->gravity)), "gravity", ruga_norm(def->gravity), "finite"));
+    if (!def->has_interior) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(require(def->lattice.cells >= 1 && def->lattice.cells <= 1000, "lattice.cells", def->lattice.cells,
+                     "between 1 and 1000"));
+    RUGA_TRY(require(def->lattice.degree == 1 || def->lattice.degree == 2, "lattice.degree",
+                     def->lattice.degree, "1 or 2"));
+    RUGA_TRY(require(def->lattice.depth >= 0 && isfinite(def->lattice.depth), "lattice.depth",
+                     def->lattice.depth, "0 or above"));
+    RUGA_TRY(require(c->count >= 0 && c->count <= def->mesh.vertex_count, "coupling.count", c->count,
+                     "between 0 and the number of vertices"));
+    RUGA_TRY(require(c->radius >= 0 && isfinite(c->radius), "coupling.radius", c->radius, "0 or above"));
+    RUGA_TRY(require(c->sigma >= 0 && isfinite(c->sigma), "coupling.sigma", c->sigma, "0 or above"));
+    RUGA_TRY(require(def->interior.motion != RUGA_INTERIOR_PRESCRIBED || def->keyframe_count > 0,
+                     "the number of prescribed keyframes", def->keyframe_count, "1 or above"));
+    for (int k = 1; k < def->keyframe_count; k++) {
+        RUGA_TRY(require(def->keyframes[k].time > def->keyframes[k - 1].time, "prescribed time",
+                         def->keyframes[k].time, "above that of the keyframe before"));
+    }
+    return RUGA_OK;
+}
+
+static ruga_status check_mesh(const ruga_model* model) {
+    ruga_check_report report;
+    bool embedded = model->has_interior && model->lattice_def.fill == RUGA_FILL_MESH;
+    RUGA_TRY(ruga_mesh_check(&model->mesh, embedded ? RUGA_CHECK_EMBEDDED : RUGA_CHECK_SHELL, &report));
+    ruga_status status = ruga_check_status(&report, "the mesh");
+    ruga_check_report_clear(&report);
+    return status;
+}
+
+// ---- copies --------------------------------------------------------------------------------------------
+
+static ruga_status copy_handles(const ruga_model_def* def, ruga_model* model) {
+    RUGA_TRY(RUGA_NEW_ZERO(model->handles, def->handle_count));
+    model->handle_count = def->handle_count;
+    for (int i = 0; i < def->handle_count; i++) {
+        ruga_handle_def* handle = &model->handles[i];
+        *handle = def->handles[i];
+        ruga_region* region = &handle->region;
+        const char* group = region->group;
+        const int* vertices = region->vertices;
+        region->group = NULL;
+        region->vertices = NULL;
+        if (group) {
+            region->group = ruga_copy_string(group);
+            if (!region->group) {
+                return ruga_fail(RUGA_NO_MEMORY, "out of memory");
+            }
+        }
+        if (vertices) {
+            int* copy;
+            RUGA_TRY(RUGA_NEW(copy, region->vertex_count));
+            memcpy(copy, vertices, (size_t)region->vertex_count * sizeof *copy);
+            region->vertices = copy;
+        }
+    }
+    return RUGA_OK;
+}
+
+static ruga_status copy_def(const ruga_model_def* def, ruga_model* model) {
+    model->skin = def->skin;
+    model->has_interior = def->has_interior;
+    model->interior = def->interior;
+    model->lattice_def = def->lattice;
+    model->coupling = def->coupling;
+    model->solver = def->solver;
+    model->step = def->step;
+    model->frames = def->frames;
+    memcpy(model->gravity, def->gravity, sizeof model->gravity);
+    if (model->solver.method == RUGA_METHOD_DEFAULT) {
+        model->solver.method = RUGA_METHOD_QUASI_NEWTON;
+    }
+    RUGA_TRY(ruga_mesh_from_def(&def->mesh, &model->mesh));
+    RUGA_TRY(RUGA_NEW(model->keyframes, def->keyframe_count));
+    memcpy(model->keyframes, def->keyframes, (size_t)def->keyframe_count * sizeof *model->keyframes);
+    model->keyframe_count = def->keyframe_count;
+    return copy_handles(def, model);
+}
+
+// ---- building ------------------------------------------------------------------------------------------
+
+static ruga_status build_mesh(ruga_model* model) {
+    double min[3], max[3];
+    RUGA_TRY(ruga_progress("checking the mesh", 0));
+    RUGA_TRY(check_mesh(model));
+    RUGA_TRY(ruga_connectivity_create(&model->mesh, &model->connectivity));
+    ruga_mesh_bounds(&model->mesh, min, max);
+    for (int i = 0; i < 3; i++) {
+        model->center[i] = 0.5 * (min[i] + max[i]);
+    }
+    model->mean_edge = ruga_mesh_mean_edge(&model->mesh);
+    RUGA_TRY(RUGA_NEW(model->vertex_area, model->mesh.vertex_count));
+    ruga_mesh_vertex_areas(&model->mesh, model->vertex_area);
+    return RUGA_OK;
+}
+
+// Which handle holds which component of the skin; the first one wins.
+static ruga_status build_skin_holds(ruga_model* model) {
+    ruga_status status = RUGA_OK;
+    int vertices = model->mesh.vertex_count, *selected = NULL;
+    RUGA_TRY(RUGA_NEW(model->skin_handle, 3 * (size_t)vertices));
+    memset(model->skin_handle, -1, 3 * (size_t)vertices * sizeof *model->skin_handle);
+    RUGA_TRY(RUGA_NEW(selected, vertices));
+    for (int h = 0; h < model->handle_count; h++) {
+        const ruga_handle_def* handle = &model->handles[h];
+        int count;
+        bool holds = handle->kind == RUGA_HANDLE_FIX || handle->kind == RUGA_HANDLE_MOVE;
+        if (!holds || (handle->hold == RUGA_HOLD_INTERIOR && model->has_interior)) {
+            continue;
+        }
+        RUGA_TRY_DONE(ruga_region_vertices(&handle->region, &model->mesh, &count, selected));
+        if (count == 0 && (handle->hold == RUGA_HOLD_SKIN || !model->has_interior)) {
+            status = ruga_fail(RUGA_BAD_INPUT, "handles.%d: the region selects no vertex of the skin", h);
+            goto done;
+        }
+        for (int k = 0; k < count; k++) {
+            for (int axis = 0; axis < 3; axis++) {
+                int* holder = &model->skin_handle[3 * (size_t)selected[k] + (size_t)axis];
+                if (handle->axes[axis] && *holder < 0) {
+                    *holder = h;
+                    model->any_skin_held = true;
+                }
+            }
+        }
+    }
+done:
+    ruga_release(selected);
+    return status;
+}
+
+static ruga_status build_clusters(ruga_model* model) {
+    ruga_coupling_def* c = &model->coupling;
+    double radius, sigma;
+    ruga_clusters_rule(c->rule, model->wavelength, &radius, &sigma);
+    c->radius = c->radius > 0 ? c->radius : radius;
+    c->sigma = c->sigma > 0 ? c->sigma : sigma;
+    RUGA_TRY(ruga_progress("placing clusters", 0));
+    RUGA_TRY(ruga_clusters_create(&model->mesh, &model->connectivity, c->radius, c->sigma, c->count,
+                                  model->solver.seed, &model->clusters));
+    c->count = model->clusters.count;
+    if (c->kind == RUGA_COUPLING_SPECTRAL) {
+        ruga_clusters_clear(&model->clusters);
+        RUGA_TRY(ruga_progress("finding Laplacian eigenvectors", 0));
+        RUGA_TRY(ruga_clusters_create_spectral(&model->mesh, &model->connectivity, c->count, &model->clusters));
+    }
+    return RUGA_OK;
+}
+
+static ruga_status build_coupling(ruga_model* model) {
+    model->wavelength = ruga_wrinkle_wavelength(&model->skin, &model->interior);
+    model->critical_strain = ruga_wrinkle_critical_strain(&model->skin, &model->interior);
+    const ruga_coupling_def* c = &model->coupling;
+    model->solves_skin = c->kind != RUGA_COUPLING_NONE || c->foundation;
+    if (!model->solves_skin) {
+        return RUGA_OK;
+    }
+    double edges = model->wavelength / model->mean_edge;
+    if (edges < 3 && !model->solver.allow_coarse) {
+        return ruga_fail(RUGA_BAD_INPUT,
+                         "the mesh has %.2g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
+                         "least 3 are needed and 8 are good: remesh with edge %.3g m, or set solver.allow_coarse",
+                         edges, model->mean_edge, model->wavelength, model->wavelength / 8);
+    }
+    if (c->kind != RUGA_COUPLING_NONE) {
+        RUGA_TRY(build_clusters(model));
+    }
+    if (c->foundation) {
+        double nu = model->interior.poisson, k = 2 * RUGA_PI / model->wavelength;
+        double modulus = model->interior.young / (1 - nu * nu);
+        model->foundation_a = modulus * k / 4;
+        model->foundation_b = modulus / (4 * k);
+        RUGA_TRY(ruga_foundation_create(&model->mesh, &model->connectivity, model->foundation_a,
+                                        model->foundation_b, &model->foundation));
+    }
+    return RUGA_OK;
+}
+
+static ruga_status build_interior(ruga_model* model) {
+    RUGA_TRY(ruga_progress("building the lattice", 0));
+    RUGA_TRY(ruga_lattice_create(&model->mesh, &model->connectivity, &model->lattice_def, &model->lattice));
+    if (!ruga_model_is_prescribed(model)) {
+        RUGA_TRY(ruga_rows_create(&model->lattice, &model->mesh, model->handle_count, model->handles,
+                                  &model->rows));
+    }
+    return build_coupling(model);
+}
+
+bool ruga_model_is_prescribed(const ruga_model* model) {
+    return model->has_interior && model->interior.motion == RUGA_INTERIOR_PRESCRIBED;
+}
+
+ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
+    RUGA_ASSERT(def->cookie == RUGA_MODEL_COOKIE);
+    ruga_status status = RUGA_OK;
+    ruga_model* model = NULL;
+    *out = NULL;
+    RUGA_TRY(check_material(def));
+    RUGA_TRY(check_numbers(def));
+    RUGA_TRY(RUGA_NEW_ZERO(model, 1));
+    RUGA_TRY_DONE(copy_def(def, model));
+    RUGA_TRY_DONE(build_mesh(model));
+    RUGA_TRY_DONE(build_skin_holds(model));
+    RUGA_TRY_DONE(ruga_loads_create(&model->mesh, &model->connectivity, model->handle_count, model->handles,
+                                    &model->loads));
+    if (model->has_interior) {
+        RUGA_TRY_DONE(build_interior(model));
+    } else {
+        model->solves_skin = true;
+    }
+done:
+    if (status != RUGA_OK) {
+        ruga_model_destroy(&model);
+    }
+    *out = model;
+    return status;
+}
+
+void ruga_model_destroy(ruga_model** model_pointer) {
+    ruga_model* model = *model_pointer;
+    if (!model) {
+        return;
+    }
+    for (int i = 0; i < model->handle_count; i++) {
+        ruga_release((void*)(uintptr_t)model->handles[i].region.group);
+        ruga_release((void*)(uintptr_t)model->handles[i].region.vertices);
+    }
+    ruga_release(model->handles);
+    ruga_release(model->keyframes);
+    ruga_release(model->vertex_area);
+    ruga_release(model->skin_handle);
+    ruga_loads_destroy(&model->loads);
+    ruga_foundation_clear(&model->foundation);
+    ruga_clusters_clear(&model->clusters);
+    ruga_rows_clear(&model->rows);
+    ruga_lattice_clear(&model->lattice);
+    ruga_connectivity_clear(&model->connectivity);
+    ruga_mesh_clear(&model->mesh);
+    ruga_release(model);
+    *model_pointer = NULL;
+}
+
+int ruga_model_vertex_count(const ruga_model* model) {
+    return model->mesh.vertex_count;
+}
+
+double ruga_model_wavelength(const ruga_model* model) {
+    return model->wavelength;
+}
+
+double ruga_model_critical_strain(const ruga_model* model) {
+    return model->critical_strain;
+}

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// The published solve made robust: Newton on the KKT system from a feasible start, with the exact Hessian where its
+// inertia is that of a minimum and a diagonal shift where it is not, Armijo's rule on the energy, and a step of
+// negative curvature at saddles. The linear system is solved directly, or by Belos MINRES with the preconditioner
+// L |D| L^T of a factor that is kept across iterations and frames while it serves (Gill, Murray, Ponceleon,
+// Saunders 1992: with the factor of the matrix itself two iterations are enough).
+#include "solver/belos_shim.h"
+#include "solver/skin.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MAX_ITERATIONS = 400, MINRES_MAX = 300, MINRES_STALE = 40 };
+enum { GRADIENT, PROJECTED, DIRECTION, SIDE, SOLUTION }; // work vectors
+
+// y = [K H^T; H 0] x with the stiffness last assembled.
+static ruga_status apply_system(const double* x, double* y, void* context) {
+    const ruga_skin* skin = context;
+    ruga_sparse_multiply_symmetric(&skin->kkt, x, y);
+    return RUGA_OK;
+}
+
+static ruga_status apply_preconditioner(const double* x, double* y, void* context) {
+    ruga_skin* skin = context;
+    return skin->m ? ruga_factor_solve_absolute(skin->factor, x, y) : ruga_factor_solve(skin->factor, x, y);
+}
+
+// Newton direction by MINRES; *good = false where the factor no longer serves or the direction does not descend.
+static ruga_status direction_minres(ruga_skin* skin, const double* x, const double* projected, double* d,
+                                    bool* good) {
+    double *side = ruga_skin_vector(skin, SIDE), *solution = ruga_skin_vector(skin, SOLUTION);
+    *good = false;
+    if (!skin->factor_right) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(ruga_skin_assemble(skin, x, 0));
+    memset(side, 0, (size_t)(skin->n + skin->m) * sizeof *side);
+    memset(solution, 0, (size_t)(skin->n + skin->m) * sizeof *solution);
+    for (int i = 0; i < skin->n; i++) {
+        side[i] = -projected[i];
+    }
+    ruga_minres_report report;
+    RUGA_TRY(ruga_belos_minres(skin->n + skin->m, apply_system, apply_preconditioner, skin, side, solution, 1e-4,
+                               MINRES_MAX, &report));
+    skin->work.linear_iterations += report.iterations;
+    memcpy(d, solution, (size_t)skin->n * sizeof *d);
+    *good = report.converged && report.iterations <= MINRES_STALE &&
+            ruga_dot_product(skin->n, projected, d) < 0;
+    return RUGA_OK;
+}
+
+// Newton direction from a factor of the right inertia; *shifted tells whether the exact Hessian had the wrong one.
+static ruga_status direction_direct(ruga_skin* skin, const double* x, const double* projected, double* d,
+                                    bool* shifted) {
+    RUGA_TRY(ruga_skin_factor(skin, x, 0, 0));
+    *shifted = !skin->factor_right;
+    if (*shifted) {
+        RUGA_TRY(ruga_skin_shift_until_right(skin));
+    } else {
+        skin->shift_memory *= 0.25;
+    }
+    RUGA_TRY(ruga_skin_solve(skin, projected, d));
+    for (int i = 0; i < skin->n; i++) {
+        d[i] = -d[i];
+    }
+    return RUGA_OK;
+}
+
+static ruga_status direction(ruga_skin* skin, const double* x, const double* projected, double* d, bool* shifted) {
+    bool good = false;
+    *shifted = false;
+    if (skin->model->solver.linear == RUGA_LINEAR_MINRES) {
+        RUGA_TRY(direction_minres(skin, x, projected, d, &good));
+    }
+    if (!good) {
+        RUGA_TRY(direction_direct(skin, x, projected, d, shifted));
+    }
+    return ruga_skin_clean_direction(skin, d);
+}
+
+ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
+                                 ruga_skin_result* result) {
+    double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
+    double *d = ruga_skin_vector(skin, DIRECTION), step;
+    result->outcome = RUGA_OUTCOME_NOT_CONVERGED;
+    RUGA_TRY(ruga_skin_energy(skin, x, &result->terms, gradient));
+    for (int k = 0; k < MAX_ITERATIONS; k++, skin->work.iterations++) {
+        bool stuck = false, shifted;
+        RUGA_TRY(ruga_skin_project(skin, gradient, projected));
+        result->residual = ruga_skin_residual(skin, projected, &result->terms);
+        if (result->residual <= tolerance) {
+            RUGA_TRY(ruga_skin_certify(skin, x, certify, gradient, result, &stuck));
+            if (stuck) {
+                return RUGA_OK;
+            }
+            continue;
+        }
+        RUGA_TRY(direction(skin, x, projected, d, &shifted));
+        if (shifted && ruga_largest_move(skin->n, d) < 0.1 * skin->model->skin.thickness) {
+            RUGA_TRY(ruga_negative_curvature_step(skin, x, &result->terms, gradient, &stuck));
+            if (stuck) {
+                continue; // it moved
+            }
+        }
+        RUGA_TRY(ruga_armijo_search(skin, d, x, &result->terms, gradient, &step));
+        if (step == 0) {
+            return RUGA_OK;
+        }
+    }
+    return RUGA_OK;
+}

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// L-BFGS on the null space of the constraints. Its initial inverse is a factor of the KKT matrix that is renewed about
+// every 16 iterations from a Hessian with half of the compressive geometric stiffness taken out (the exact one is
+// indefinite while wrinkles move); the last certified exact factor starts the next frame. A KKT solve returns steps
+// with H d = 0, so every iterate stays feasible. facts: a wrinkled valley is curved on the scale of the thickness,
+// so any quadratic model serves for about 0.2 h only; cheap steps with a fresh enough factor win over Newton's.
+#include "solver/skin.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { PAIRS = 8, REFRESH = 16, MAX_ITERATIONS = 3000 };
+enum { GRADIENT, PROJECTED, DIRECTION, OLD_GRADIENT, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
+
+typedef struct memory {
+    int count, newest; // pairs kept, slot of the newest
+    double rho[PAIRS]; // 1 / s.y
+    double gamma;      // scale of the initial inverse
+} memory;
+
+static int slot_of(const memory* m, int age) {
+    return (m->newest - age + 2 * PAIRS) % PAIRS;
+}
+
+// d = - (two-loop recursion) g
+static ruga_status lbfgs_direction(ruga_skin* skin, const memory* m, const double* g, double* d) {
+    double a[PAIRS], *q = ruga_skin_vector(skin, WORK);
+    memcpy(q, g, (size_t)skin->n * sizeof *q);
+    for (int age = 0; age < m->count; age++) {
+        int k = slot_of(m, age);
+        const double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
+        a[k] = m->rho[k] * ruga_dot_product(skin->n, s, q);
+        for (int i = 0; i < skin->n; i++) {
+            q[i] -= a[k] * y[i];
+        }
+    }
+    RUGA_TRY(ruga_skin_solve(skin, q, d));
+    for (int i = 0; i < skin->n; i++) {
+        d[i] *= m->gamma;
+    }
+    for (int age = m->count - 1; age >= 0; age--) {
+        int k = slot_of(m, age);
+        const double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
+        double b = m->rho[k] * ruga_dot_product(skin->n, y, d);
+        for (int i = 0; i < skin->n; i++) {
+            d[i] += s[i] * (a[k] - b);
+        }
+    }
+    for (int i = 0; i < skin->n; i++) {
+        d[i] = -d[i];
+    }
+    return RUGA_OK;
+}
+
+// Keeps the pair of the step just made where its curvature is positive, and rescales the initial inverse by the
+// ratio of the factor's curvature to the true one along it.
+static void remember(ruga_skin* skin, memory* m, const double* x, const double* gradient, double slope,
+                     double step) {
+    int k = (m->newest + 1) % PAIRS;
+    double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
+    const double *old_x = ruga_skin_vector(skin, OLD_POSITION), *old_g = ruga_skin_vector(skin, OLD_GRADIENT);
+    for (int i = 0; i < skin->n; i++) {
+        s[i] = x[i] - old_x[i];
+        y[i] = skin->model->skin_handle[i] >= 0 ? 0 : gradient[i] - old_g[i];
+    }
+    double sy = ruga_dot_product(skin->n, s, y);
+    if (!(sy > 1e-6 * step * step * fabs(slope))) {
+        return;
+    }
+    double* image = ruga_skin_vector(skin, WORK);
+    ruga_skin_multiply(skin, s, image);
+    m->gamma = fmin(fmax(ruga_dot_product(skin->n, s, image) / sy, 0.05), 1);
+    m->rho[k] = 1 / sy;
+    m->newest = k;
+    m->count = m->count < PAIRS ? m->count + 1 : PAIRS;
+}
+
+// One direction and line search. *step = 0 where the energy could not be lowered; *move is the direction's length.
+static ruga_status iterate(ruga_skin* skin, memory* m, double* x, double* gradient, const double* projected,
+                           ruga_skin_terms* terms, double* step, double* move) {
+    double* d = ruga_skin_vector(skin, DIRECTION);
+    RUGA_TRY(lbfgs_direction(skin, m, projected, d));
+    *move = ruga_largest_move(skin->n, d);
+    RUGA_TRY(ruga_skin_clean_direction(skin, d));
+    memcpy(ruga_skin_vector(skin, OLD_POSITION), x, (size_t)skin->n * sizeof *x);
+    memcpy(ruga_skin_vector(skin, OLD_GRADIENT), gradient, (size_t)skin->n * sizeof *gradient);
+    double slope = ruga_dot_product(skin->n, gradient, d);
+    RUGA_TRY(ruga_armijo_search(skin, d, x, terms, gradient, step));
+    if (*step > 0) {
+        remember(skin, m, x, gradient, slope, *step);
+    }
+    return RUGA_OK;
+}
+
+ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
+                                       ruga_skin_result* result) {
+    double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
+    memory m = {.gamma = 1, .newest = -1};
+    double score = 0, step, move;
+    int failures = 0;
+    result->outcome = RUGA_OUTCOME_NOT_CONVERGED;
+    RUGA_TRY(ruga_skin_energy(skin, x, &result->terms, gradient));
+    if (!skin->factor_right) {
+        RUGA_TRY(ruga_skin_factor_convex(skin, x));
+    }
+    for (int k = 0; k < MAX_ITERATIONS; k++, skin->work.iterations++) {
+        RUGA_TRY(ruga_skin_project(skin, gradient, projected));
+        result->residual = ruga_skin_residual(skin, projected, &result->terms);
+        if (result->residual <= tolerance) {
+            bool done;
+            RUGA_TRY(ruga_skin_certify(skin, x, certify, gradient, result, &done));
+            if (done) {
+                return RUGA_OK;
+            }
+            score = REFRESH;
+        }
+        if (score >= REFRESH) {
+            RUGA_TRY(ruga_skin_factor_convex(skin, x));
+            m = (memory){.gamma = 1, .newest = -1};
+            score = 0;
+            continue;
+        }
+        RUGA_TRY(iterate(skin, &m, x, gradient, projected, &result->terms, &step, &move));
+        // A first step that is far too long or hardly taken: the old factor is of no use here.
+        bool useless = score == 0 && (move > 2 * skin->model->skin.thickness || step < 0.2) && failures == 0;
+        score = useless || step == 0 ? REFRESH : score + 1 + (step < 0.35);
+        failures = step == 0 ? failures + 1 : 0;
+        if (failures > 3) {
+            return RUGA_OK;
+        }
+    }
+    return RUGA_OK;
+}

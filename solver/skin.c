@@ -1,0 +1,540 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// Evaluation, factorisation and projection of the skin's static problem; see skin.h.
+//
+// Held components keep their rows in the matrix (the pattern never changes): off-diagonals are zero and the
+// diagonal is the mean stiffness, so that they take no part and do not disturb scaling or inertia.
+#include "solver/skin.h"
+
+#include "core/memory.h"
+#include "core/progress.h"
+#include "core/vec3.h"
+
+#include <string.h>
+
+double ruga_dot_product(int n, const double* a, const double* b) {
+    // Four sums let the compiler use vector registers; their order is fixed.
+    double s[4] = {0, 0, 0, 0};
+    int i = 0;
+    for (; i + 4 <= n; i += 4) {
+        for (int k = 0; k < 4; k++) {
+            s[k] += a[i + k] * b[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        s[0] += a[i] * b[i];
+    }
+    return (s[0] + s[1]) + (s[2] + s[3]);
+}
+
+double ruga_largest_move(int n, const double* d) {
+    double largest = 0;
+    for (int i = 0; i < n; i += 3) {
+        double square = ruga_dot(d + i, d + i);
+        largest = square > largest ? square : largest;
+    }
+    return sqrt(largest);
+}
+
+static bool held(const ruga_skin* skin, int i) {
+    return skin->model->skin_handle[i] >= 0;
+}
+
+// ---- creation ------------------------------------------------------------------------------------------
+
+// Rows of H that a vertex is in: the transpose of the clusters' rows.
+typedef struct transpose {
+    int* start;
+    int* row;
+    double* weight;
+} transpose;
+
+static void transpose_clear(transpose* t) {
+    ruga_release(t->start);
+    ruga_release(t->row);
+    ruga_release(t->weight);
+}
+
+static ruga_status transpose_clusters(const ruga_clusters* clusters, int vertices, transpose* t) {
+    RUGA_TRY(RUGA_NEW_ZERO(t->start, vertices + 2));
+    int entries = clusters->count ? clusters->start[clusters->count] : 0;
+    RUGA_TRY(RUGA_NEW(t->row, entries));
+    RUGA_TRY(RUGA_NEW(t->weight, entries));
+    for (int k = 0; k < entries; k++) {
+        t->start[clusters->vertex[k] + 2]++;
+    }
+    for (int v = 0; v < vertices; v++) {
+        t->start[v + 2] += t->start[v + 1];
+    }
+    for (int r = 0; r < clusters->count; r++) {
+        for (int k = clusters->start[r]; k < clusters->start[r + 1]; k++) {
+            int at = t->start[clusters->vertex[k] + 1]++;
+            t->row[at] = r;
+            t->weight[at] = clusters->weight[k];
+        }
+    }
+    return RUGA_OK;
+}
+
+// A row whose vertices are all held says nothing: its multiplier gets a unit diagonal, negative so that the
+// inertia stays (n, m, 0).
+static bool row_is_void(const ruga_skin* skin, int row, int axis) {
+    const ruga_clusters* c = &skin->model->clusters;
+    for (int k = c->start[row]; k < c->start[row + 1]; k++) {
+        if (!held(skin, 3 * c->vertex[k] + axis)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static ruga_status create_kkt(ruga_skin* skin, const transpose* t) {
+    const ruga_sparse* k = ruga_shell_pattern(skin->shell);
+    int n = skin->n, m = skin->m;
+    int64_t entries = (int64_t)k->start[n] + 3 * (int64_t)t->start[n / 3] + m;
+    if (entries > INT32_MAX) {
+        return ruga_fail(RUGA_NO_MEMORY, "the skin's system has %lld entries, more than 2^31: use a coarser mesh",
+                         (long long)entries);
+    }
+    ruga_sparse* kkt = &skin->kkt;
+    kkt->rows = kkt->columns = n + m;
+    RUGA_TRY(RUGA_NEW(kkt->start, n + m + 1));
+    RUGA_TRY(RUGA_NEW(kkt->index, entries));
+    RUGA_TRY(RUGA_NEW_ZERO(kkt->value, entries));
+    RUGA_TRY(RUGA_NEW(skin->column_shift, n));
+    int out = 0;
+    for (int j = 0; j < n; j++) {
+        kkt->start[j] = out;
+        skin->column_shift[j] = out - k->start[j];
+        for (int p = k->start[j]; p < k->start[j + 1]; p++) {
+            kkt->index[out++] = k->index[p];
+        }
+        int v = j / 3, axis = j % 3;
+        for (int p = t->start[v]; p < t->start[v + 1]; p++) {
+            kkt->index[out] = n + 3 * t->row[p] + axis;
+            kkt->value[out++] = held(skin, j) ? 0 : t->weight[p];
+        }
+    }
+    for (int r = 0; r < m; r++) {
+        kkt->start[n + r] = out;
+        kkt->index[out] = n + r;
+        kkt->value[out++] = row_is_void(skin, r / 3, r % 3) ? -1 : 0;
+    }
+    kkt->start[n + m] = out;
+    return RUGA_OK;
+}
+
+static ruga_status create_factor(ruga_skin* skin) {
+    ruga_status status = RUGA_OK;
+    int nodes = (skin->n + skin->m) / 3, *start = NULL;
+    bool* last = NULL;
+    RUGA_TRY_DONE(RUGA_NEW(start, nodes + 1));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(last, nodes));
+    for (int i = 0; i <= nodes; i++) {
+        start[i] = 3 * i;
+    }
+    for (int i = skin->n / 3; i < nodes; i++) {
+        last[i] = true;
+    }
+    RUGA_TRY_DONE(ruga_factor_create(skin->m ? RUGA_FACTOR_LDL : RUGA_FACTOR_CHOLESKY, &skin->kkt, nodes, start,
+                                     skin->m ? last : NULL, &skin->factor));
+done:
+    ruga_release(start);
+    ruga_release(last);
+    return status;
+}
+
+static bool axes_are_held_alike(const ruga_model* model) {
+    for (int v = 0; v < model->mesh.vertex_count; v++) {
+        const int* h = model->skin_handle + 3 * (size_t)v;
+        if ((h[0] >= 0) != (h[1] >= 0) || (h[0] >= 0) != (h[2] >= 0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Adds 1e-12 of the diagonal: overlapping Gaussians make H H^T nearly singular.
+static ruga_status create_gram(ruga_skin* skin, const transpose* t, int axis) {
+    ruga_status status = RUGA_OK;
+    int vertices = skin->n / 3;
+    int64_t pairs = 0, count = 0;
+    int(*pair)[2] = NULL;
+    ruga_sparse gram = {0};
+    for (int v = 0; v < vertices; v++) {
+        int64_t rows = t->start[v + 1] - t->start[v];
+        pairs += rows * (rows - 1) / 2;
+    }
+    RUGA_TRY_DONE(RUGA_NEW(pair, pairs));
+    for (int v = 0; v < vertices; v++) {
+        for (int p = t->start[v]; p < t->start[v + 1]; p++) {
+            for (int q = t->start[v]; q < p; q++) {
+                pair[count][0] = t->row[p];
+                pair[count++][1] = t->row[q];
+            }
+        }
+    }
+    RUGA_TRY_DONE(ruga_sparse_from_pairs(skin->m / 3, 1, count, (const int(*)[2])pair, &gram));
+    for (int v = 0; v < vertices; v++) {
+        for (int p = t->start[v]; p < t->start[v + 1] && !held(skin, 3 * v + axis); p++) {
+            for (int q = t->start[v]; q <= p; q++) {
+                gram.value[ruga_sparse_find(&gram, t->row[p], t->row[q])] += t->weight[p] * t->weight[q];
+            }
+        }
+    }
+    for (int r = 0; r < skin->m / 3; r++) {
+        double* diagonal = gram.value + gram.start[r];
+        *diagonal = *diagonal > 0 ? *diagonal * (1 + 1e-12) : 1;
+    }
+    RUGA_TRY_DONE(ruga_factor_create(RUGA_FACTOR_LDL, &gram, gram.rows, NULL, NULL, &skin->gram[axis]));
+    ruga_factor_info info;
+    RUGA_TRY_DONE(ruga_factor_numeric(skin->gram[axis], gram.value, &info));
+done:
+    ruga_release(pair);
+    ruga_sparse_clear(&gram);
+    return status;
+}
+
+static ruga_status create_grams(ruga_skin* skin, const transpose* t) {
+    int axes = axes_are_held_alike(skin->model) ? 1 : 3;
+    for (int axis = 0; axis < axes && skin->m; axis++) {
+        RUGA_TRY(create_gram(skin, t, axis));
+    }
+    return RUGA_OK;
+}
+
+static ruga_status create_vectors(ruga_skin* skin) {
+    int n = skin->n, m = skin->m;
+    RUGA_TRY(RUGA_NEW_ZERO(skin->stiffness, ruga_shell_pattern(skin->shell)->start[n]));
+    RUGA_TRY(RUGA_NEW_ZERO(skin->target, n));
+    RUGA_TRY(RUGA_NEW_ZERO(skin->displacement, n));
+    RUGA_TRY(RUGA_NEW_ZERO(skin->right, n + m));
+    RUGA_TRY(RUGA_NEW_ZERO(skin->left, n + m));
+    RUGA_TRY(RUGA_NEW_ZERO(skin->multiplier, m));
+    RUGA_TRY(RUGA_NEW_ZERO(skin->trial, n));
+    RUGA_TRY(RUGA_NEW_ZERO(skin->trial_gradient, n));
+    RUGA_TRY(RUGA_NEW(skin->memory, (size_t)RUGA_SKIN_WORK_VECTORS * (size_t)(n + m)));
+    RUGA_TRY(RUGA_NEW_ZERO(skin->mass, n / 3));
+    ruga_shell_vertex_mass(skin->shell, skin->mass);
+    return RUGA_OK;
+}
+
+ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** out) {
+    ruga_status status = RUGA_OK;
+    ruga_skin* skin = NULL;
+    transpose t = {0};
+    *out = NULL;
+    RUGA_TRY(RUGA_NEW_ZERO(skin, 1));
+    skin->model = model;
+    skin->n = 3 * model->mesh.vertex_count;
+    skin->m = 3 * model->clusters.count;
+    ruga_shell_material material = {.skin = model->skin};
+    RUGA_TRY_DONE(ruga_shell_create(&model->mesh, &model->connectivity, &material, &skin->shell));
+    RUGA_TRY_DONE(transpose_clusters(&model->clusters, skin->n / 3, &t));
+    RUGA_TRY_DONE(create_vectors(skin));
+    if (model->solves_skin) {
+        RUGA_TRY_DONE(create_kkt(skin, &t));
+        RUGA_TRY_DONE(create_factor(skin));
+        RUGA_TRY_DONE(create_grams(skin, &t));
+    }
+    if (model->foundation.vertex_count) {
+        RUGA_TRY_DONE(ruga_foundation_map(&model->foundation, ruga_shell_pattern(skin->shell),
+                                          &skin->foundation_slot));
+    }
+done:
+    transpose_clear(&t);
+    if (status != RUGA_OK) {
+        ruga_skin_destroy(&skin);
+    }
+    *out = skin;
+    return status;
+}
+
+void ruga_skin_destroy(ruga_skin** skin_pointer) {
+    ruga_skin* skin = *skin_pointer;
+    if (!skin) {
+        return;
+    }
+    ruga_shell_destroy(&skin->shell);
+    ruga_sparse_clear(&skin->kkt);
+    ruga_factor_destroy(&skin->factor);
+    for (int axis = 0; axis < 3; axis++) {
+        ruga_factor_destroy(&skin->gram[axis]);
+    }
+    void* const owned[] = {skin->column_shift, skin->foundation_slot, skin->stiffness,
+                           skin->target,       skin->displacement,    skin->right,
+                           skin->left,         skin->multiplier,      skin->trial,
+                           skin->trial_gradient, skin->memory,        skin->mass};
+    for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
+        ruga_release(owned[i]);
+    }
+    ruga_release(skin);
+    *skin_pointer = NULL;
+}
+
+// ---- energy --------------------------------------------------------------------------------------------
+
+static double add_weight(const ruga_skin* skin, const double* x, double* gradient, double* force_square) {
+    const double* g = skin->model->gravity;
+    double energy = 0;
+    for (int v = 0; v < skin->n / 3; v++) {
+        double mass = skin->mass[v];
+        energy -= mass * ruga_dot(g, x + 3 * (size_t)v);
+        *force_square += mass * mass * ruga_dot(g, g);
+        if (gradient) {
+            ruga_add_scaled(-mass, g, gradient + 3 * (size_t)v);
+        }
+    }
+    return energy;
+}
+
+static double add_proximal(const ruga_skin* skin, const double* x, double* gradient) {
+    double energy = 0;
+    for (int i = 0; i < skin->n; i++) {
+        double s = skin->proximal * skin->model->vertex_area[i / 3], d = x[i] - skin->anchor[i];
+        energy += 0.5 * s * d * d;
+        if (gradient) {
+            gradient[i] += s * d;
+        }
+    }
+    return energy;
+}
+
+ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* terms, double* gradient) {
+    double begin = ruga_clock();
+    const ruga_model* model = skin->model;
+    ruga_shell_energies shell;
+    RUGA_TRY(ruga_shell_energy(skin->shell, x, 0, &shell, gradient, NULL));
+    *terms = (ruga_skin_terms){.membrane = shell.membrane, .bending = shell.bending};
+    double force_square = shell.force_square, part = 0;
+    if (model->foundation.vertex_count) {
+        for (int i = 0; i < skin->n; i++) {
+            skin->displacement[i] = x[i] - skin->embedded[i];
+        }
+        terms->foundation = ruga_foundation_energy(&model->foundation, skin->displacement, gradient, &part);
+        force_square += part;
+    }
+    RUGA_TRY(ruga_loads_energy(model->loads, x, skin->time, &terms->external, gradient, NULL, NULL,
+                               &force_square));
+    if (ruga_dot(model->gravity, model->gravity) > 0) {
+        terms->external += add_weight(skin, x, gradient, &force_square);
+    }
+    double proximal = skin->proximal > 0 ? add_proximal(skin, x, gradient) : 0;
+    terms->total = terms->membrane + terms->bending + terms->foundation + terms->external + proximal;
+    double floor = 1e-8 * model->skin.young * model->skin.thickness * model->mean_edge;
+    terms->force_reference = fmax(sqrt(force_square), floor);
+    skin->work.seconds_energy += ruga_clock() - begin;
+    return RUGA_OK;
+}
+
+// ---- matrix --------------------------------------------------------------------------------------------
+
+static void fill_kkt(ruga_skin* skin, double shift) {
+    const ruga_sparse* k = ruga_shell_pattern(skin->shell);
+    const bool any_held = skin->model->any_skin_held;
+    double mean = 0;
+    for (int j = 0; j < skin->n; j++) {
+        mean += fabs(skin->stiffness[k->start[j]]) / skin->n;
+    }
+    for (int j = 0; j < skin->n; j++) {
+        double* column = skin->kkt.value + k->start[j] + skin->column_shift[j];
+        int count = k->start[j + 1] - k->start[j];
+        const double* source = skin->stiffness + k->start[j];
+        memcpy(column, source, (size_t)count * sizeof *column);
+        column[0] += shift * skin->model->vertex_area[j / 3];
+        if (!any_held) {
+            continue;
+        }
+        for (int p = 0; p < count; p++) {
+            if (held(skin, j) || held(skin, k->index[k->start[j] + p])) {
+                column[p] = p == 0 ? mean : 0;
+            }
+        }
+    }
+}
+
+static ruga_status factorize(ruga_skin* skin, double shift) {
+    double begin = ruga_clock();
+    fill_kkt(skin, shift);
+    double filled = ruga_clock();
+    RUGA_TRY(ruga_factor_numeric(skin->factor, skin->kkt.value, &skin->info));
+    skin->factor_right = skin->m ? skin->info.negative == skin->m && skin->info.zero == 0 : skin->info.success;
+    skin->work.factorizations++;
+    skin->work.seconds_assembly += filled - begin;
+    skin->work.seconds_factor += ruga_clock() - filled;
+    return RUGA_OK;
+}
+
+ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
+    double begin = ruga_clock();
+    const ruga_model* model = skin->model;
+    const ruga_sparse* pattern = ruga_shell_pattern(skin->shell);
+    ruga_shell_energies shell;
+    double external = 0;
+    RUGA_TRY(ruga_shell_energy(skin->shell, x, clamp, &shell, NULL, skin->stiffness));
+    if (model->foundation.vertex_count) {
+        ruga_foundation_add_hessian(&model->foundation, skin->foundation_slot, skin->stiffness);
+    }
+    RUGA_TRY(ruga_loads_energy(model->loads, x, skin->time, &external, NULL, pattern, skin->stiffness, NULL));
+    for (int j = 0; j < skin->n && skin->proximal > 0; j++) {
+        skin->stiffness[pattern->start[j]] += skin->proximal * model->vertex_area[j / 3];
+    }
+    fill_kkt(skin, 0);
+    skin->work.seconds_assembly += ruga_clock() - begin;
+    return RUGA_OK;
+}
+
+ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift) {
+    RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
+    RUGA_TRY(factorize(skin, shift));
+    skin->factor_exact = clamp == 0 && shift == 0;
+    return RUGA_OK;
+}
+
+ruga_status ruga_skin_refactor(ruga_skin* skin, double shift) {
+    skin->factor_exact = skin->factor_exact && shift == 0;
+    return factorize(skin, shift);
+}
+
+double ruga_skin_shift_unit(const ruga_model* model) {
+    if (model->foundation_a > 0) {
+        return model->foundation_a;
+    }
+    double h = model->skin.thickness, k = 2 * RUGA_PI / (10 * model->mean_edge);
+    return model->skin.young * h * h * h / 12 * k * k * k * k;
+}
+
+ruga_status ruga_skin_factor_convex(ruga_skin* skin, const double* x) {
+    RUGA_TRY(ruga_skin_factor(skin, x, 0.5, 0));
+    if (!skin->factor_right) {
+        RUGA_TRY(ruga_skin_factor(skin, x, 1, 0));
+    }
+    for (double shift = 1e-3 * ruga_skin_shift_unit(skin->model); !skin->factor_right && shift < 1e30; shift *= 10) {
+        RUGA_TRY(ruga_skin_refactor(skin, shift));
+    }
+    return skin->factor_right ? RUGA_OK
+                              : ruga_fail(RUGA_LIBRARY, "the skin's matrix could not be made positive definite");
+}
+
+ruga_status ruga_skin_shift_until_right(ruga_skin* skin) {
+    double shift = skin->shift_memory > 0 ? 0.25 * skin->shift_memory
+                                          : 0.02 * ruga_skin_shift_unit(skin->model);
+    for (; shift < 1e30; shift *= 4) {
+        RUGA_TRY(ruga_skin_refactor(skin, shift));
+        if (skin->factor_right) {
+            skin->shift_memory = shift;
+            return RUGA_OK;
+        }
+    }
+    return ruga_fail(RUGA_LIBRARY, "the skin's matrix could not be made positive definite");
+}
+
+ruga_status ruga_skin_solve_system(ruga_skin* skin, const double* right, double* left) {
+    double begin = ruga_clock();
+    RUGA_TRY(ruga_factor_solve(skin->factor, right, left));
+    skin->work.seconds_solve += ruga_clock() - begin;
+    skin->work.linear_iterations++;
+    return RUGA_OK;
+}
+
+ruga_status ruga_skin_solve(ruga_skin* skin, const double* r, double* d) {
+    for (int i = 0; i < skin->n; i++) {
+        skin->right[i] = held(skin, i) ? 0 : r[i];
+    }
+    memset(skin->right + skin->n, 0, (size_t)skin->m * sizeof *skin->right);
+    RUGA_TRY(ruga_skin_solve_system(skin, skin->right, skin->left));
+    memcpy(d, skin->left, (size_t)skin->n * sizeof *d);
+    return RUGA_OK;
+}
+
+void ruga_skin_multiply(const ruga_skin* skin, const double* v, double* y) {
+    ruga_sparse k = *ruga_shell_pattern(skin->shell);
+    k.value = skin->stiffness;
+    ruga_sparse_multiply_symmetric(&k, v, y);
+    for (int i = 0; i < skin->n && skin->model->any_skin_held; i++) {
+        y[i] = held(skin, i) ? 0 : y[i];
+    }
+}
+
+// ---- constraints ---------------------------------------------------------------------------------------
+
+// multiplier = (H H^T)^-1 y over the free components, y [m] component by component.
+static ruga_status solve_gram(ruga_skin* skin, const double* y, double* multiplier) {
+    int rows = skin->m / 3;
+    for (int axis = 0; axis < 3; axis++) {
+        ruga_factor* gram = skin->gram[axis] ? skin->gram[axis] : skin->gram[0];
+        double* one = skin->right;
+        for (int r = 0; r < rows; r++) {
+            one[r] = y[3 * r + axis];
+        }
+        RUGA_TRY(ruga_factor_solve(gram, one, one));
+        for (int r = 0; r < rows; r++) {
+            multiplier[3 * r + axis] = one[r];
+        }
+    }
+    return RUGA_OK;
+}
+
+static void zero_held(const ruga_skin* skin, double* v) {
+    for (int i = 0; i < skin->n && skin->model->any_skin_held; i++) {
+        v[i] = held(skin, i) ? 0 : v[i];
+    }
+}
+
+ruga_status ruga_skin_project(ruga_skin* skin, const double* gradient, double* out) {
+    if (out != gradient) {
+        memcpy(out, gradient, (size_t)skin->n * sizeof *out);
+    }
+    zero_held(skin, out);
+    if (skin->m == 0) {
+        return RUGA_OK;
+    }
+    double* y = skin->left;
+    ruga_clusters_apply(&skin->model->clusters, out, y);
+    RUGA_TRY(solve_gram(skin, y, skin->multiplier));
+    for (int r = 0; r < skin->m; r++) {
+        skin->multiplier[r] = -skin->multiplier[r];
+    }
+    ruga_clusters_apply_transpose(&skin->model->clusters, skin->multiplier, out);
+    zero_held(skin, out);
+    return RUGA_OK;
+}
+
+double ruga_skin_constraint_residual(ruga_skin* skin, const double* x) {
+    if (skin->m == 0) {
+        return 0;
+    }
+    double *hx = skin->left, *hb = skin->right;
+    ruga_clusters_apply(&skin->model->clusters, x, hx);
+    ruga_clusters_apply(&skin->model->clusters, skin->embedded, hb);
+    double scale = sqrt(ruga_dot_product(skin->m, hb, hb));
+    for (int r = 0; r < skin->m; r++) {
+        hx[r] -= hb[r];
+    }
+    return sqrt(ruga_dot_product(skin->m, hx, hx)) / fmax(scale, 1e-300);
+}
+
+ruga_status ruga_skin_restore(ruga_skin* skin, double* x) {
+    for (int i = 0; i < skin->n && skin->model->any_skin_held; i++) {
+        x[i] = held(skin, i) ? skin->target[i] : x[i];
+    }
+    if (skin->m == 0) {
+        return RUGA_OK;
+    }
+    double *y = skin->left, *move = skin->trial;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < skin->n; i++) {
+            skin->displacement[i] = skin->embedded[i] - x[i];
+        }
+        ruga_clusters_apply(&skin->model->clusters, skin->displacement, y);
+        RUGA_TRY(solve_gram(skin, y, y));
+        memset(move, 0, (size_t)skin->n * sizeof *move);
+        ruga_clusters_apply_transpose(&skin->model->clusters, y, move);
+        zero_held(skin, move);
+        for (int i = 0; i < skin->n; i++) {
+            x[i] += move[i];
+        }
+    }
+    return RUGA_OK;
+}

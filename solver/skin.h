@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// The static problem of the skin on a given interior (Remillard and Kry 2013, section 6.1):
+//     minimise  E(x) = shell + foundation + loads + weight (+ proximal term)   over x
+//     subject to  H x = H B q   and   held components fixed.
+// This file evaluates it, factorises its KKT matrix [K H^T; H 0] and projects onto its constraints. The methods that
+// solve it are newton.c, quasi_newton.c and paper.c, reached by ruga_skin_minimize.
+#ifndef RUGA_SOLVER_SKIN_H
+#define RUGA_SOLVER_SKIN_H
+
+#include "core/sparse.h"
+#include "shell/shell.h"
+#include "solver/linear.h"
+#include "solver/model.h"
+
+typedef struct ruga_skin_terms {
+    double total, membrane, bending, foundation, external; // J
+    double force_reference;                               // f_ref, N
+} ruga_skin_terms;
+
+// Work done by the methods, added up over a step.
+typedef struct ruga_skin_work {
+    int iterations, linear_iterations, factorizations;
+    double seconds_assembly, seconds_factor, seconds_solve, seconds_energy;
+} ruga_skin_work;
+
+typedef struct ruga_skin {
+    const ruga_model* model;
+    ruga_shell* shell;
+    int n; // 3 V
+    int m; // 3 clusters
+
+    ruga_sparse kkt;        // lower triangle of [K H^T; H 0], or of K
+    int* column_shift;      // [n] from a column of the shell's pattern to the same one of kkt
+    int* foundation_slot;
+    double* stiffness;      // K as last assembled, without shift, in the shell's pattern
+    ruga_factor* factor;
+    ruga_factor_info info;
+    bool factor_right;      // the factor's inertia is that of a minimum
+    bool factor_exact;      // made from the exact Hessian without a shift, at the state last given
+    ruga_factor* gram[3];   // H H^T over the free components; [1] and [2] NULL where they equal [0]
+    double shift_memory;    // last diagonal shift that gave the right inertia, N/m^3
+
+    const double* embedded; // [n] B q, of the caller
+    double* target;         // [n] positions of held components
+    double time;
+    double proximal;        // N/m^3, 0 = none
+    const double* anchor;   // [n] of the proximal term
+
+    double* displacement;   // [n] work: x - B q
+    double *right, *left;   // [n + m] work: one system's sides
+    double* multiplier;     // [m] of the last projection
+    double* trial;          // [n] work of line searches
+    double* trial_gradient; // [n]
+    double* memory;         // L-BFGS pairs and more, [work_vectors][n + m]
+    double* mass;           // [V] kg
+    ruga_skin_work work;
+} ruga_skin;
+
+ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** skin);
+void ruga_skin_destroy(ruga_skin** skin);
+
+// Energy at x; the full gradient [n] where not NULL (held components are not zeroed).
+ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* terms, double* gradient);
+
+// Assembles K at x (clamp as in shell.h) into stiffness and kkt; the factor stays as it is.
+ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp);
+// Assembles, adds shift times vertex area to the diagonal, and factorises. See factor_right.
+ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift);
+// The same K with another shift.
+ruga_status ruga_skin_refactor(ruga_skin* skin, double shift);
+// Tries clamp 0.5, then 1, then shifts, until the inertia is right.
+ruga_status ruga_skin_factor_convex(ruga_skin* skin, const double* x);
+
+// A stiffness per area, N/m^3, that is small against that of a wrinkle: the unit of diagonal shifts.
+double ruga_skin_shift_unit(const ruga_model* model);
+// Raises the shift of the K last assembled (exact, of wrong inertia) until the inertia is right.
+ruga_status ruga_skin_shift_until_right(ruga_skin* skin);
+
+// d = the first n of [K H^T; H 0]^-1 [r; 0], with held components of r taken as 0: H d = 0.
+ruga_status ruga_skin_solve(ruga_skin* skin, const double* r, double* d);
+// The full system: sides [n + m].
+ruga_status ruga_skin_solve_system(ruga_skin* skin, const double* right, double* left);
+
+// out = gradient without its held components and without its part in the range of H^T; sets multiplier (so
+// that gradient + H^T multiplier is smallest). out may be gradient.
+ruga_status ruga_skin_project(ruga_skin* skin, const double* gradient, double* out);
+// Moves x the least so that H x = H B q and held components are at their target.
+ruga_status ruga_skin_restore(ruga_skin* skin, double* x);
+// |H x - H B q| / |H B q|
+double ruga_skin_constraint_residual(ruga_skin* skin, const double* x);
+
+// y = K v with the stiffness of the last factor, held components zeroed; v is zero there.
+void ruga_skin_multiply(const ruga_skin* skin, const double* v, double* y);
+
+typedef struct ruga_skin_result {
+    ruga_outcome outcome;
+    double residual; // |projected gradient| / f_ref
+    ruga_skin_terms terms;
+} ruga_skin_result;
+
+// From x (restored first) to an equilibrium, by the model's method. `certify`: the outcome is checked by the
+// inertia at zero shift; without it a small residual is reported as minimum.
+ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
+                               ruga_skin_result* result);
+
+// The methods.
+ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
+                                 ruga_skin_result* result);
+ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
+                                       ruga_skin_result* result);
+ruga_status ruga_paper_minimize(ruga_skin* skin, double* x, double tolerance, ruga_skin_result* result);
+
+// What they share. Residual of a projected gradient; a direction made finite and capped to half an edge; and the
+// certificate of a converged state: *done with the outcome in result, or a step off the saddle.
+double ruga_skin_residual(const ruga_skin* skin, const double* projected, const ruga_skin_terms* terms);
+ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d);
+ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double* gradient, ruga_skin_result* result,
+                              bool* done);
+
+// Line search along d from x (energy and gradient there given): Armijo's rule on the energy with quadratic
+// interpolation; a full step of negative curvature is doubled while the energy falls. On success x, terms and gradient are
+// those of the new point and *step > 0; *step = 0 where no decrease was found.
+ruga_status ruga_armijo_search(ruga_skin* skin, const double* d, double* x, ruga_skin_terms* terms,
+                               double* gradient, double* step);
+
+// A step along a direction of negative curvature of K at x, where the exact factor has the wrong inertia:
+// *moved = false where none was found. x, terms and gradient follow.
+ruga_status ruga_negative_curvature_step(ruga_skin* skin, double* x, ruga_skin_terms* terms, double* gradient,
+                                         bool* moved);
+
+// Largest vertex displacement in a vector [n].
+double ruga_largest_move(int n, const double* d);
+double ruga_dot_product(int n, const double* a, const double* b);
+
+enum { RUGA_SKIN_WORK_VECTORS = 24 };
+// Work vector i of length n + m.
+static inline double* ruga_skin_vector(ruga_skin* skin, int i) {
+    return skin->memory + (size_t)i * (size_t)(skin->n + skin->m);
+}
+
+#endif

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// Everything of a simulation that changes, and what a later session needs to go on from it.
+#ifndef RUGA_SOLVER_STATE_H
+#define RUGA_SOLVER_STATE_H
+
+#include "solver/interior.h"
+#include "solver/skin.h"
+
+struct ruga_state {
+    const ruga_model* model;
+    int frame;
+    double time;
+    double* x;        // [V][3] skin
+    double* embedded; // [V][3] B q
+    double* q;        // [N][3] lattice nodes
+    double* v;        // [N][3] their velocities
+    ruga_skin* skin;
+    ruga_interior* interior; // NULL where prescribed or absent
+    double *old_q, *old_x, *next_embedded, *anchor; // work
+    double* strain;   // [F] work: compressive strain of the embedded surface
+};
+
+// Restart vector: all that the next frame depends on besides the model.
+int ruga_state_restart_size(const ruga_model* model);
+void ruga_state_save(const ruga_state* state, double* restart);
+ruga_status ruga_state_load(ruga_state* state, const double* restart);
+
+// Lattice node positions [N][3]; NULL without an interior.
+const double* ruga_state_lattice(const ruga_state* state);
+
+// Energies, residuals and outcome of the state as it stands, for frame 0.
+ruga_status ruga_state_measure(ruga_state* state, ruga_report* report);
+
+#endif

@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// One time step, and how it is split. Jumping far past onset freezes wrong modes (a short wave that the constraints
+// happen to allow), so the step is divided until no part of the surface gains more than a quarter of the critical
+// strain at a time below twice the critical strain, or half a percent beyond.
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "core/vec3.h"
+#include "lattice/motion.h"
+#include "solver/state.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MAX_SUBSTEPS = 1000 };
+
+// ---- life ----------------------------------------------------------------------------------------------
+
+static ruga_status create_vectors(ruga_state* state) {
+    const ruga_model* model = state->model;
+    size_t n = 3 * (size_t)model->mesh.vertex_count, nodes = 3 * (size_t)model->lattice.node_count;
+    RUGA_TRY(RUGA_NEW_ZERO(state->x, n));
+    RUGA_TRY(RUGA_NEW_ZERO(state->embedded, n));
+    RUGA_TRY(RUGA_NEW_ZERO(state->next_embedded, n));
+    RUGA_TRY(RUGA_NEW_ZERO(state->old_x, n));
+    RUGA_TRY(RUGA_NEW_ZERO(state->anchor, n));
+    RUGA_TRY(RUGA_NEW_ZERO(state->q, nodes));
+    RUGA_TRY(RUGA_NEW_ZERO(state->v, nodes));
+    RUGA_TRY(RUGA_NEW_ZERO(state->old_q, nodes));
+    return RUGA_NEW_ZERO(state->strain, model->mesh.triangle_count);
+}
+
+static void set_start(ruga_state* state) {
+    const ruga_model* model = state->model;
+    size_t n = 3 * (size_t)model->mesh.vertex_count;
+    memcpy(state->x, model->mesh.position, n * sizeof *state->x);
+    memcpy(state->embedded, model->mesh.position, n * sizeof *state->x);
+    if (!model->has_interior) {
+        return;
+    }
+    if (ruga_model_is_prescribed(model)) {
+        ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, 0, state->q);
+    } else {
+        memcpy(state->q, model->lattice.rest, 3 * (size_t)model->lattice.node_count * sizeof *state->q);
+    }
+    ruga_lattice_embed(&model->lattice, state->q, state->embedded);
+    memcpy(state->x, state->embedded, n * sizeof *state->x);
+}
+
+ruga_status ruga_state_create(const ruga_model* model, ruga_state** out) {
+    ruga_status status = RUGA_OK;
+    ruga_state* state = NULL;
+    *out = NULL;
+    RUGA_TRY(RUGA_NEW_ZERO(state, 1));
+    state->model = model;
+    RUGA_TRY_DONE(create_vectors(state));
+    RUGA_TRY_DONE(ruga_progress("analysing the skin", 0));
+    RUGA_TRY_DONE(ruga_skin_create(model, &state->skin));
+    state->skin->embedded = state->embedded;
+    state->skin->anchor = state->anchor;
+    if (model->has_interior && !ruga_model_is_prescribed(model)) {
+        RUGA_TRY_DONE(ruga_progress("analysing the interior", 0));
+        RUGA_TRY_DONE(ruga_interior_create(model, state->skin, &state->interior));
+    }
+    set_start(state);
+done:
+    if (status != RUGA_OK) {
+        ruga_state_destroy(&state);
+    }
+    *out = state;
+    return status;
+}
+
+void ruga_state_destroy(ruga_state** state_pointer) {
+    ruga_state* state = *state_pointer;
+    if (!state) {
+        return;
+    }
+    ruga_interior_destroy(&state->interior);
+    ruga_skin_destroy(&state->skin);
+    void* const owned[] = {state->x,     state->embedded,      state->q,      state->v,     state->old_q,
+                           state->old_x, state->next_embedded, state->anchor, state->strain};
+    for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
+        ruga_release(owned[i]);
+    }
+    ruga_release(state);
+    *state_pointer = NULL;
+}
+
+int ruga_state_frame(const ruga_state* state) {
+    return state->frame;
+}
+
+double ruga_state_time(const ruga_state* state) {
+    return state->time;
+}
+
+const double* ruga_state_positions(const ruga_state* state) {
+    return state->x;
+}
+
+const double* ruga_state_embedded(const ruga_state* state) {
+    return state->embedded;
+}
+
+const double* ruga_state_lattice(const ruga_state* state) {
+    return state->model->has_interior ? state->q : NULL;
+}
+
+// ---- restart -------------------------------------------------------------------------------------------
+
+enum { RESTART_SCALARS = 5 }; // frame, time, shift memory, proximal factor, whether a kept factor exists
+
+int ruga_state_restart_size(const ruga_model* model) {
+    return RESTART_SCALARS + 3 * model->mesh.vertex_count + 6 * model->lattice.node_count;
+}
+
+void ruga_state_save(const ruga_state* state, double* restart) {
+    size_t n = 3 * (size_t)state->model->mesh.vertex_count, nodes = 3 * (size_t)state->model->lattice.node_count;
+    *restart++ = state->frame;
+    *restart++ = state->time;
+    *restart++ = state->skin->shift_memory;
+    *restart++ = state->skin->proximal;
+    *restart++ = state->skin->factor_exact && state->skin->factor_right;
+    memcpy(restart, state->x, n * sizeof *restart);
+    memcpy(restart + n, state->q, nodes * sizeof *restart);
+    memcpy(restart + n + nodes, state->v, nodes * sizeof *restart);
+}
+
+ruga_status ruga_state_load(ruga_state* state, const double* restart) {
+    const ruga_model* model = state->model;
+    size_t n = 3 * (size_t)model->mesh.vertex_count, nodes = 3 * (size_t)model->lattice.node_count;
+    state->frame = (int)restart[0];
+    state->time = restart[1];
+    state->skin->shift_memory = restart[2];
+    state->skin->proximal = restart[3];
+    bool kept = restart[4] > 0;
+    restart += RESTART_SCALARS;
+    memcpy(state->x, restart, n * sizeof *restart);
+    memcpy(state->q, restart + n, nodes * sizeof *restart);
+    memcpy(state->v, restart + n + nodes, nodes * sizeof *restart);
+    if (model->has_interior) {
+        ruga_lattice_embed(&model->lattice, state->q, state->embedded);
+    }
+    state->skin->time = state->time;
+    // The factor that the next frame starts from is made again from the state it was made at.
+    return kept && model->solves_skin ? ruga_skin_factor(state->skin, state->x, 0, 0) : RUGA_OK;
+}
+
+// ---- how far a step goes -------------------------------------------------------------------------------
+
+typedef struct strain_job {
+    const ruga_mesh* mesh;
+    const double* position;
+    double* strain;
+} strain_job;
+
+// Largest compressive in-plane strain of each triangle: 1 - the smaller singular value of its deformation.
+static void triangle_strains(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    strain_job* job = context;
+    for (int f = begin; f < end; f++) {
+        const int* t = job->mesh->triangle + 3 * (size_t)f;
+        const double *a = job->mesh->position + 3 * (size_t)t[0], *p = job->position + 3 * (size_t)t[0];
+        double u[3], v[3], du[3], dv[3];
+        ruga_subtract(job->mesh->position + 3 * (size_t)t[1], a, u);
+        ruga_subtract(job->mesh->position + 3 * (size_t)t[2], a, v);
+        ruga_subtract(job->position + 3 * (size_t)t[1], p, du);
+        ruga_subtract(job->position + 3 * (size_t)t[2], p, dv);
+        // Metric of the deformation in a frame of the rest triangle: C = D^-T (metric of du, dv) D^-1.
+        double length = ruga_norm(u), along = ruga_dot(u, v) / length;
+        double height = sqrt(fmax(ruga_dot(v, v) - along * along, 0));
+        double e0[3], e1[3];
+        for (int i = 0; i < 3; i++) {
+            e0[i] = du[i] / length;
+            e1[i] = (dv[i] - along * e0[i]) / height;
+        }
+        double c00 = ruga_dot(e0, e0), c11 = ruga_dot(e1, e1), c01 = ruga_dot(e0, e1);
+        double mean = 0.5 * (c00 + c11), spread = hypot(0.5 * (c00 - c11), c01);
+        job->strain[f] = 1 - sqrt(fmax(mean - spread, 0));
+    }
+}
+
+// Parts that a change of the embedded surface from `from` to `to` should be made in.
+static int count_substeps(ruga_state* state, const double* from, const double* to) {
+    const ruga_model* model = state->model;
+    double critical = model->critical_strain, parts = 1;
+    double* before = ruga_skin_vector(state->skin, 0);
+    strain_job job = {&model->mesh, from, state->strain};
+    if (!model->solves_skin || !model->has_interior) {
+        return 1;
+    }
+    ruga_parallel_for(model->mesh.triangle_count, 4096, triangle_strains, &job);
+    // At most two triangles for each vertex and some: the first work vectors are long enough.
+    memcpy(before, state->strain, (size_t)model->mesh.triangle_count * sizeof *before);
+    job.position = to;
+    ruga_parallel_for(model->mesh.triangle_count, 4096, triangle_strains, &job);
+    for (int f = 0; f < model->mesh.triangle_count; f++) {
+        double gain = state->strain[f] - before[f];
+        if (gain <= 0 || state->strain[f] < 0.5 * critical) {
+            continue;
+        }
+        double allowed = before[f] < 2 * critical ? fmin(0.25 * critical, 5e-3) : 5e-3;
+        parts = fmax(parts, gain / allowed);
+    }
+    return (int)fmin(ceil(parts - 1e-9), MAX_SUBSTEPS);
+}
+
+// ---- steps ---------------------------------------------------------------------------------------------
+
+static void worse_outcome(ruga_report* report, ruga_outcome outcome) {
+    report->outcome = outcome > report->outcome ? outcome : report->outcome;
+}
+
+static void take_skin_result(ruga_state* state, const ruga_skin_result* result, ruga_report* report) {
+    report->outcome = result->outcome;
+    report->residual_shell = result->residual;
+    report->energy_membrane = result->terms.membrane;
+    report->energy_bending = result->terms.bending;
+    report->energy_foundation = result->terms.foundation;
+    report->energy_external = result->terms.external;
+    report->constraint_residual = ruga_skin_constraint_residual(state->skin, state->x);
+}
+
+static void set_handle_targets(ruga_state* state) {
+    const ruga_model* model = state->model;
+    for (int v = 0; v < model->mesh.vertex_count && model->any_skin_held; v++) {
+        for (int axis = 0; axis < 3; axis++) {
+            int i = 3 * v + axis, h = model->skin_handle[i];
+            if (h < 0) {
+                continue;
+            }
+            double target[3];
+            ruga_handle_target(&model->handles[h], state->skin->time, model->mesh.position + 3 * (size_t)v, target);
+            bool follows = model->has_interior && model->handles[h].hold != RUGA_HOLD_SKIN;
+            state->skin->target[i] = follows ? state->embedded[i] : target[axis];
+        }
+    }
+}
+
+// The skin is carried along by the interior's move, which keeps H x = H B q exactly; the published method
+// starts from where the skin was.
+static void carry_skin(ruga_state* state, const double* next_embedded) {
+    int n = state->skin->n;
+    for (int i = 0; i < n && state->model->solver.method != RUGA_METHOD_PAPER; i++) {
+        state->x[i] += next_embedded[i] - state->embedded[i];
+    }
+    memcpy(state->embedded, next_embedded, (size_t)n * sizeof *next_embedded);
+    memcpy(state->anchor, state->x, (size_t)n * sizeof *state->x);
+}
+
+static void set_damping(ruga_state* state, double dt) {
+    const ruga_model* model = state->model;
+    bool damped = model->skin.motion == RUGA_SKIN_DAMPED && model->solves_skin;
+    state->skin->proximal = damped ? ruga_skin_shift_unit(model) * model->skin.relaxation / dt : 0;
+}
+
+static ruga_status solve_skin_alone(ruga_state* state, ruga_report* report) {
+    ruga_skin_result result = {.outcome = RUGA_OUTCOME_MINIMUM};
+    set_handle_targets(state);
+    if (state->model->solves_skin) {
+        RUGA_TRY(ruga_skin_minimize(state->skin, state->x, state->model->solver.tolerance, true, &result));
+    } else {
+        memcpy(state->x, state->embedded, (size_t)state->skin->n * sizeof *state->x);
+        RUGA_TRY(ruga_skin_energy(state->skin, state->x, &result.terms, NULL));
+    }
+    take_skin_result(state, &result, report);
+    return RUGA_OK;
+}
+
+static ruga_status step_prescribed(ruga_state* state, ruga_report* report) {
+    const ruga_model* model = state->model;
+    double begin = state->time, dt = model->step;
+    ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, begin + dt, state->q);
+    ruga_lattice_embed(&model->lattice, state->q, state->next_embedded);
+    int parts = count_substeps(state, state->embedded, state->next_embedded);
+    report->substeps = parts;
+    set_damping(state, dt / parts);
+    for (int k = 1; k <= parts; k++) {
+        state->skin->time = begin + dt * k / parts;
+        ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, state->skin->time,
+                       state->q);
+        ruga_lattice_embed(&model->lattice, state->q, state->next_embedded);
+        carry_skin(state, state->next_embedded);
+        RUGA_TRY(ruga_progress("static solve", (k - 1.0) / parts));
+        RUGA_TRY(solve_skin_alone(state, report));
+    }
+    return RUGA_OK;
+}
+
+static ruga_status step_shell(ruga_state* state, ruga_report* report) {
+    state->skin->time = state->time + state->model->step;
+    report->substeps = 1;
+    memcpy(state->anchor, state->x, (size_t)state->skin->n * sizeof *state->x);
+    set_damping(state, state->model->step);
+    return solve_skin_alone(state, report);
+}
+
+static void take_interior_result(ruga_state* state, const ruga_interior_result* result, ruga_report* report) {
+    take_skin_result(state, &result->skin, report);
+    if (!result->converged) {
+        worse_outcome(report, RUGA_OUTCOME_NOT_CONVERGED);
+    }
+    report->residual_coupled = result->residual;
+    report->newton_iterations += result->iterations;
+    report->linear_iterations += result->linear_iterations;
+    report->factorizations += result->factorizations;
+    report->energy_interior = result->elastic;
+    report->energy_external += result->weight;
+}
+
+// One part of a step of the coupled system, of length dt, ending at `time`.
+static ruga_status step_part(ruga_state* state, double time, double dt, ruga_report* report) {
+    const ruga_model* model = state->model;
+    ruga_interior* in = state->interior;
+    int n = in->n;
+    bool dynamic = model->interior.motion == RUGA_INTERIOR_DYNAMIC;
+    ruga_interior_result result;
+    memcpy(in->previous, state->q, (size_t)n * sizeof *state->q);
+    memcpy(in->start, state->q, (size_t)n * sizeof *state->q);
+    for (int i = 0; i < n && dynamic; i++) {
+        in->start[i] += dt * state->v[i];
+    }
+    in->mass_factor = dynamic ? 1 / (dt * dt) : 0;
+    in->damping_factor = dynamic ? model->interior.damping / dt : 0;
+    state->skin->time = time;
+    set_damping(state, dt);
+    ruga_interior_set_targets(in, time);
+    set_handle_targets(state);
+    RUGA_TRY(ruga_interior_predict(in, state->q, state->x, state->old_q));
+    memcpy(state->q, state->old_q, (size_t)n * sizeof *state->q);
+    ruga_lattice_embed(&model->lattice, state->q, state->next_embedded);
+    carry_skin(state, state->next_embedded);
+    if (model->solver.method == RUGA_METHOD_PAPER) {
+        RUGA_TRY(ruga_interior_paper_step(in, model->solver.tolerance, state->q, state->x, state->embedded, &result));
+    } else {
+        RUGA_TRY(ruga_interior_minimize(in, model->solver.tolerance, state->q, state->x, state->embedded, &result));
+    }
+    for (int i = 0; i < n; i++) {
+        state->v[i] = dynamic ? (state->q[i] - in->previous[i]) / dt : 0;
+    }
+    take_interior_result(state, &result, report);
+    return RUGA_OK;
+}
+
+// What the whole step would do to the surface if the skin followed: how many parts it needs.
+static ruga_status foresee(ruga_state* state, int* parts) {
+    const ruga_model* model = state->model;
+    ruga_interior* in = state->interior;
+    double dt = model->step;
+    bool dynamic = model->interior.motion == RUGA_INTERIOR_DYNAMIC;
+    memcpy(in->previous, state->q, (size_t)in->n * sizeof *state->q);
+    for (int i = 0; i < in->n; i++) {
+        in->start[i] = state->q[i] + (dynamic ? dt * state->v[i] : 0);
+    }
+    in->mass_factor = dynamic ? 1 / (dt * dt) : 0;
+    in->damping_factor = dynamic ? model->interior.damping / dt : 0;
+    state->skin->time = state->time + dt;
+    ruga_interior_set_targets(in, state->skin->time);
+    RUGA_TRY(ruga_interior_predict(in, state->q, state->x, state->old_q));
+    ruga_lattice_embed(&model->lattice, state->old_q, state->next_embedded);
+    *parts = count_substeps(state, state->embedded, state->next_embedded);
+    return RUGA_OK;
+}
+
+static ruga_status step_coupled(ruga_state* state, ruga_report* report) {
+    double begin = state->time, dt = state->model->step;
+    int parts = 1;
+    if (state->model->solver.method != RUGA_METHOD_PAPER) {
+        RUGA_TRY(foresee(state, &parts));
+    }
+    report->substeps = parts;
+    for (int k = 1; k <= parts; k++) {
+        RUGA_TRY(step_part(state, begin + dt * k / parts, dt / parts, report));
+    }
+    return RUGA_OK;
+}
+
+static double kinetic_energy(ruga_state* state) {
+    ruga_interior* in = state->interior;
+    if (!in || state->model->interior.motion != RUGA_INTERIOR_DYNAMIC) {
+        return 0;
+    }
+    ruga_sparse mass = *ruga_elasticity_pattern(in->elasticity);
+    mass.value = in->mass;
+    ruga_sparse_multiply_symmetric(&mass, state->v, state->old_q);
+    return 0.5 * ruga_dot_product(in->n, state->v, state->old_q);
+}
+
+ruga_status ruga_state_step(const ruga_model* model, ruga_state* state, ruga_report* report) {
+    RUGA_ASSERT(state->model == model);
+    ruga_report unused, *out = report ? report : &unused;
+    *out = (ruga_report){0};
+    double begin = ruga_clock();
+    ruga_skin_work* work = &state->skin->work;
+    *work = (ruga_skin_work){0};
+    if (!model->has_interior) {
+        RUGA_TRY(step_shell(state, out));
+    } else if (ruga_model_is_prescribed(model)) {
+        RUGA_TRY(step_prescribed(state, out));
+    } else {
+        RUGA_TRY(step_coupled(state, out));
+    }
+    state->frame++;
+    state->time = state->frame * model->step;
+    state->skin->time = state->time;
+    if (out->outcome != RUGA_OUTCOME_MINIMUM) {
+        state->skin->factor_right = state->skin->factor_exact = false;
+    }
+    out->newton_iterations += work->iterations;
+    out->linear_iterations += work->linear_iterations;
+    out->factorizations += work->factorizations;
+    out->energy_kinetic = kinetic_energy(state);
+    out->seconds_assembly = work->seconds_assembly;
+    out->seconds_factor = work->seconds_factor;
+    out->seconds_solve = work->seconds_solve;
+    out->seconds_total = ruga_clock() - begin;
+    out->seconds_other = out->seconds_total - out->seconds_assembly - out->seconds_factor - out->seconds_solve;
+    return RUGA_OK;
+}
+
+ruga_status ruga_state_measure(ruga_state* state, ruga_report* report) {
+    ruga_skin_result result = {.outcome = RUGA_OUTCOME_MINIMUM};
+    *report = (ruga_report){0};
+    double *gradient = ruga_skin_vector(state->skin, 0), *projected = ruga_skin_vector(state->skin, 1);
+    RUGA_TRY(ruga_skin_energy(state->skin, state->x, &result.terms, gradient));
+    RUGA_TRY(ruga_skin_project(state->skin, gradient, projected));
+    result.residual = state->model->solves_skin ? ruga_skin_residual(state->skin, projected, &result.terms) : 0;
+    take_skin_result(state, &result, report);
+    return RUGA_OK;
+}
