@@ -16,18 +16,30 @@ typedef struct ruga_clusters {
     int* start;     // [count + 1]
     int* vertex;    // [start[count]] ascending in each row
     double* weight; // [start[count]] each row of Gaussian clusters sums to one
+    // The same entries by vertex, for H^T: rows ascending in each column.
+    int* column_start;     // [vertex_count + 1]
+    int* column_row;       // [start[count]]
+    double* column_weight; // [start[count]]
 } ruga_clusters;
 
 // Farthest-point centres by edge-path distance from a seeded random first vertex (in every connected
 // component), until each vertex is within `radius` of one, or `count` centres where count > 0; truncated
-// Gaussian weights exp(-d^2 / 2 sigma^2) for d < 2 sigma.
+// Gaussian weights exp(-d^2 / 2 sigma^2) for d < 2 sigma. Vertices without a face belong to no cluster.
+// RUGA_BAD_INPUT where count is below the number of components or above that of the vertices, or where sigma
+// (or, without count, radius) is not positive.
 ruga_status ruga_clusters_create(const ruga_mesh* mesh, const ruga_connectivity* connectivity, double radius,
                                  double sigma, int count, int64_t seed, ruga_clusters* clusters);
 
-// Rows = the `count` eigenvectors of the mesh Laplacian (cotangent, lumped mass) with smallest eigenvalues.
+// Rows = the `count` eigenvectors L phi = lambda M phi of the mesh Laplacian (cotangent L, lumped mass M)
+// with smallest eigenvalues, as phi^T M scaled to unit 2-norm: H x is the spectral coefficient. One constant
+// vector for each component comes first, then ascending eigenvalues. RUGA_BAD_INPUT where count is below the
+// number of components or above half of the vertices.
 ruga_status ruga_clusters_create_spectral(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
                                           int count, ruga_clusters* clusters);
 void ruga_clusters_clear(ruga_clusters* clusters);
+
+// Fills the transpose (column_...) from the rows; for those who fill the rows themselves.
+ruga_status ruga_clusters_transpose(ruga_clusters* clusters);
 
 // y = H x for 3 components: x [V][3], y [count][3].   x += H^T y.
 void ruga_clusters_apply(const ruga_clusters* clusters, const double* x, double* y);
