@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// Multifrontal LDL^T: the analysis (ldl_symbolic.c), one dense front (ldl_front.c), and what drives them
+// (ldl.c: numeric factorisation and solves). linear.h is the interface for others.
+#ifndef RUGA_SOLVER_LDL_H
+#define RUGA_SOLVER_LDL_H
+
+#include "solver/linear.h"
+
+// Unknowns are numbered by their step of elimination. Supernode s eliminates steps [pivot[s], pivot[s + 1]),
+// parents after children, each subtree contiguous. Its front holds these pivots and the rows below:
+// row[row_start[s] .. row_start[s + 1]), ascending steps.
+typedef struct ruga_ldl_symbolic {
+    int n;
+    int count;         // supernodes
+    int* order;        // [n] unknown eliminated at a step
+    int* pivot;        // [count + 1]
+    int* parent;       // [count] -1 = root
+    size_t* row_start; // [count + 1]
+    int* row;          // steps
+    int* place;        // like row: where in the parent's front
+    // Matrix entries of a front: value index and place in the front (row >= column, column a pivot).
+    int* entry_start; // [count + 1]
+    int* entry;       // [entries of the matrix]
+    int* entry_row;
+    int* entry_column;
+    // Work shared out: task t < task_count has the supernodes [task[t], task[t + 1]) not marked `top`;
+    // those marked are ancestors of several tasks and come after all of them, in ascending order.
+    int task_count;
+    int* task; // [task_count + 1]
+    bool* top; // [count]
+    double entries, flops;
+} ruga_ldl_symbolic;
+
+ruga_status ruga_ldl_analyse(const ruga_sparse* lower, int node_count, const int* node_start,
+                             const bool* last, ruga_ldl_symbolic* symbolic);
+void ruga_ldl_symbolic_clear(ruga_ldl_symbolic* symbolic);
+size_t ruga_ldl_symbolic_bytes(const ruga_ldl_symbolic* symbolic);
+
+// A dense front: columns [0, full) are fully summed, of which the first `eliminated` become pivots.
+enum { RUGA_FRONT_TILE = 96 };
+typedef struct ruga_front {
+    int rows, full;
+    double* a;     // [full][rows] columns; the lower triangle counts
+    int* index;    // [rows] step of each row, permuted along with them
+    double* pivot; // [full][2] D: (d, 0), or (d11, d21), (d22, 0)
+    double* peak;  // [full] the largest size that the diagonal entry ever had: the measure of round-off
+    double* work;  // [RUGA_FRONT_TILE * full]
+    bool must_finish; // a root: no parent takes pivots that are not stable
+    int eliminated, positive, negative, zero;
+} ruga_front;
+
+// Eliminates as many of the fully summed columns as stable pivots are found for.
+void ruga_front_factor(ruga_front* front);
+
+// update -= L2 D L2^T, lower triangle of [rows - full]^2, columns [begin, end), with `work` as in the front.
+void ruga_front_update(const ruga_front* front, int begin, int end, double* work, double* update);
+
+typedef struct ruga_ldl ruga_ldl;
+
+ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start,
+                            const bool* last, ruga_ldl** ldl);
+void ruga_ldl_destroy(ruga_ldl** ldl);
+ruga_status ruga_ldl_numeric(ruga_ldl* ldl, const double* values, ruga_factor_info* info);
+ruga_status ruga_ldl_solve(ruga_ldl* ldl, const double* b, double* x);
+ruga_status ruga_ldl_solve_absolute(ruga_ldl* ldl, const double* b, double* x);
+size_t ruga_ldl_bytes(const ruga_ldl* ldl);
+
+#endif

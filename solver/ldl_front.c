@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// L D L^T of the fully summed columns of one dense front, with 1x1 and 2x2 pivots that bound the entries of
+// L by 1/u (threshold pivoting, Duff and Reid 1983): a pivot P is stable if
+//     1x1: |a_jj| >= u max_i |a_ij|,     2x2: |P^-1| (g_j, g_r)^T <= 1/u,  g = largest entry outside P.
+// Columns for which no such pivot exists are left to the parent front, where more of their rows are fully
+// summed. At a root the search over all that is left finds one unless the remaining matrix is round-off
+// (Bunch, Parlett 1971); what is round-off counts as a zero pivot.
+//
+// Work goes by blocks of 64 columns, made of blocks of 8 within which columns are updated one by one, so that
+// nearly all of it is matrix products. Only the lower triangle counts; tiles on the diagonal also write
+// above it, where nothing is read.
+#include "solver/ldl.h"
+
+#include <cblas.h>
+#include <math.h>
+
+enum { INNER = 8, OUTER = 64 };
+
+static const double threshold = 0.01;
+// A pivot below this share of the largest value that its diagonal ever had is what cancellation left.
+static const double round_off = 1e-14;
+
+static double* at(const ruga_front* f, int row, int column) {
+    return f->a + (size_t)column * f->rows + row;
+}
+
+static void swap_doubles(double* a, double* b) {
+    double t = *a;
+    *a = *b;
+    *b = t;
+}
+
+// Exchanges the fully summed unknowns p < q, neither of them eliminated.
+static void exchange(ruga_front* f, int p, int q) {
+    if (p == q) {
+        return;
+    }
+    cblas_dswap(p, at(f, p, 0), f->rows, at(f, q, 0), f->rows);
+    cblas_dswap(q - p - 1, at(f, p + 1, p), 1, at(f, q, p + 1), f->rows);
+    cblas_dswap(f->rows - q - 1, at(f, q + 1, p), 1, at(f, q + 1, q), 1);
+    swap_doubles(at(f, p, p), at(f, q, q));
+    swap_doubles(&f->peak[p], &f->peak[q]);
+    int index = f->index[p];
+    f->index[p] = f->index[q];
+    f->index[q] = index;
+}
+
+// The largest |a_ij|, i != j and i != skip, over rows [begin, rows), where columns [begin, j] are up to date.
+// *where: its row, the last of equals.
+static double largest_off_diagonal(const ruga_front* f, int begin, int j, int skip, int* where) {
+    double largest = -1;
+    for (int i = begin; i < j; i++) {
+        double size = fabs(*at(f, j, i));
+        if (i != skip && size >= largest) {
+            largest = size;
+            *where = i;
+        }
+    }
+    int cut = skip > j ? skip : f->rows;
+    const int range[2][2] = {{j + 1, cut}, {cut + 1, f->rows}};
+    for (int k = 0; k < 2; k++) {
+        int count = range[k][1] - range[k][0];
+        if (count <= 0) {
+            continue;
+        }
+        int i = range[k][0] + (int)cblas_idamax(count, at(f, range[k][0], j), 1);
+        if (fabs(*at(f, i, j)) > largest) {
+            largest = fabs(*at(f, i, j));
+            *where = i;
+        }
+    }
+    return largest < 0 ? 0 : largest;
+}
+
+static bool pair_is_stable(const ruga_front* f, int begin, int j, int r) {
+    double a = *at(f, j, j), c = *at(f, r, r), b = j < r ? *at(f, r, j) : *at(f, j, r);
+    double determinant = a * c - b * b;
+    if (fabs(b) <= round_off * sqrt(f->peak[j] * f->peak[r]) ||
+        fabs(determinant) < 0.5 * fmax(fabs(a * c), b * b) || determinant == 0) {
+        return false;
+    }
+    int unused;
+    double gj = largest_off_diagonal(f, begin, j, r, &unused);
+    double gr = largest_off_diagonal(f, begin, r, j, &unused);
+    double limit = fabs(determinant) / threshold;
+    return fabs(c) * gj + fabs(b) * gr <= limit && fabs(b) * gj + fabs(a) * gr <= limit;
+}
+
+// Size of a stable pivot on column j among the columns [begin, end), all up to date: 0 where there is none.
+static int find_pivot(const ruga_front* f, int begin, int end, int j, int* partner) {
+    double d = fabs(*at(f, j, j));
+    int r = -1;
+    double largest = largest_off_diagonal(f, begin, j, -1, &r);
+    if (d > round_off * f->peak[j] && d >= threshold * largest) {
+        return 1;
+    }
+    if (largest == 0) { // nothing but round-off: a zero pivot, wherever it stands
+        return 1;
+    }
+    if (r < end && pair_is_stable(f, begin, j, r)) {
+        *partner = r;
+        return 2;
+    }
+    return 0;
+}
+
+static void note_peaks(ruga_front* f, int begin, int end) {
+    for (int j = begin; j < end; j++) {
+        f->peak[j] = fmax(f->peak[j], fabs(*at(f, j, j)));
+    }
+}
+
+// Column k becomes a column of L, and columns (k, end) are updated.
+static void eliminate_one(ruga_front* f, int end) {
+    int k = f->eliminated, below = f->rows - k - 1, columns = end - k - 1;
+    double d = *at(f, k, k);
+    f->pivot[2 * k] = d;
+    f->pivot[2 * k + 1] = 0;
+    double* l = at(f, k + 1, k);
+    f->eliminated++;
+    f->positive += d > 0;
+    f->negative += d < 0;
+    for (int i = 0; i < columns; i++) {
+        f->work[i] = l[i];
+    }
+    cblas_dscal(below, 1 / d, l, 1);
+    if (columns > 0) {
+        cblas_dger(CblasColMajor, below, columns, -1, l, 1, f->work, 1, at(f, k + 1, k + 1), f->rows);
+    }
+    note_peaks(f, k + 1, end);
+}
+
+static void eliminate_zero(ruga_front* f) {
+    int k = f->eliminated++;
+    f->pivot[2 * k] = f->pivot[2 * k + 1] = 0;
+    f->zero++;
+    for (int i = k + 1; i < f->rows; i++) {
+        *at(f, i, k) = 0;
+    }
+}
+
+static void eliminate_pair(ruga_front* f, int end) {
+    int k = f->eliminated, below = f->rows - k - 2, columns = end - k - 2;
+    double a = *at(f, k, k), b = *at(f, k + 1, k), c = *at(f, k + 1, k + 1);
+    double determinant = a * c - b * b;
+    f->pivot[2 * k] = a;
+    f->pivot[2 * k + 1] = b;
+    f->pivot[2 * k + 2] = c;
+    f->pivot[2 * k + 3] = 0;
+    double *l = at(f, k + 2, k), *m = at(f, k + 2, k + 1);
+    *at(f, k + 1, k) = 0; // the unit lower triangle has no entry inside D
+    for (int i = 0; i < columns; i++) {
+        f->work[i] = l[i];
+        f->work[columns + i] = m[i];
+    }
+    for (int i = 0; i < below; i++) {
+        double x = l[i], y = m[i];
+        l[i] = (c * x - b * y) / determinant;
+        m[i] = (a * y - b * x) / determinant;
+    }
+    if (columns > 0) {
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, below, columns, 2, -1, l, f->rows, f->work,
+                    columns, 1, at(f, k + 2, k + 2), f->rows);
+    }
+    f->eliminated += 2;
+    f->positive += determinant < 0 ? 1 : a > 0 ? 2 : 0;
+    f->negative += determinant < 0 ? 1 : a > 0 ? 0 : 2;
+    note_peaks(f, k + 2, end);
+}
+
+// Pivots among the columns [eliminated, end), all up to date, until none of them is stable.
+static void eliminate_columns(ruga_front* f, int end) {
+    for (int j = f->eliminated; j < end;) {
+        int partner = -1, size = find_pivot(f, f->eliminated, end, j, &partner);
+        if (size == 0) {
+            j++;
+            continue;
+        }
+        int k = f->eliminated;
+        exchange(f, k, j);
+        if (size == 2) {
+            exchange(f, k + 1, partner == k ? j : partner);
+            eliminate_pair(f, end);
+        } else if (fabs(*at(f, k, k)) > round_off * f->peak[k]) {
+            eliminate_one(f, end);
+        } else {
+            eliminate_zero(f);
+        }
+        j = f->eliminated;
+    }
+}
+
+// w = (L D)^T of rows [begin, end) and pivots [first, last): column p of w is w[p * (end - begin)].
+static void multiply_pivots(const ruga_front* f, int begin, int end, int first, int last, double* w) {
+    int count = end - begin;
+    for (int p = first; p < last; p++) {
+        double d = f->pivot[2 * p], e = f->pivot[2 * p + 1];
+        const double* l = at(f, begin, p);
+        if (e == 0) {
+            for (int i = 0; i < count; i++) {
+                w[i] = d * l[i];
+            }
+            w += count;
+            continue;
+        }
+        const double *m = at(f, begin, p + 1), c = f->pivot[2 * p + 2];
+        for (int i = 0; i < count; i++) {
+            w[i] = d * l[i] + e * m[i];
+            w[count + i] = e * l[i] + c * m[i];
+        }
+        w += 2 * (size_t)count;
+        p++;
+    }
+}
+
+// Applies the pivots [first, eliminated) to the columns [begin, end).
+static void update_columns(ruga_front* f, int begin, int end, int first) {
+    int pivots = f->eliminated - first;
+    for (int t = begin; t < end && pivots > 0; t += RUGA_FRONT_TILE) {
+        int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
+        multiply_pivots(f, t, stop, first, f->eliminated, f->work);
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, f->rows - t, stop - t, pivots, -1,
+                    at(f, t, first), f->rows, f->work, stop - t, 1, at(f, t, t), f->rows);
+    }
+    note_peaks(f, begin, end);
+}
+
+// Moves the columns [eliminated, failed) to the end of [eliminated, end). Returns their new beginning.
+static int put_aside(ruga_front* f, int failed, int end) {
+    int count = failed - f->eliminated;
+    for (int k = 0; k < count && failed + k < end; k++) {
+        int target = end - 1 - k;
+        if (target <= failed - 1 - k) {
+            break;
+        }
+        exchange(f, failed - 1 - k, target);
+    }
+    return end - count;
+}
+
+// Pivots among [eliminated, end), those columns up to date; the rest of the front is not touched.
+static void eliminate_block(ruga_front* f, int end) {
+    int stop = end; // columns [stop, end) found no pivot so far
+    while (f->eliminated < stop) {
+        int first = f->eliminated, inner = stop - first < INNER ? stop : first + INNER;
+        eliminate_columns(f, inner);
+        update_columns(f, inner, end, first);
+        stop = put_aside(f, inner, stop);
+    }
+}
+
+void ruga_front_factor(ruga_front* f) {
+    f->eliminated = f->positive = f->negative = f->zero = 0;
+    int stop = f->full;
+    while (f->eliminated < stop) {
+        int first = f->eliminated, outer = stop - first < OUTER ? stop : first + OUTER;
+        eliminate_block(f, outer);
+        update_columns(f, outer, f->full, first);
+        stop = put_aside(f, outer, stop);
+    }
+    eliminate_columns(f, f->full); // those put aside, now with all others as partners
+    while (f->must_finish && f->eliminated < f->full) {
+        eliminate_zero(f);
+    }
+}
+
+void ruga_front_update(const ruga_front* f, int begin, int end, double* work, double* update) {
+    int rows = f->rows - f->full;
+    for (int t = begin; t < end; t += RUGA_FRONT_TILE) {
+        int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
+        multiply_pivots(f, f->full + t, f->full + stop, 0, f->eliminated, work);
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - t, stop - t, f->eliminated, -1,
+                    at(f, f->full + t, 0), f->rows, work, stop - t, 1, update + (size_t)t * rows + t, rows);
+    }
+}
