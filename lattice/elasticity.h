@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// Elastic energy of the interior: fixed corotational, robust to inversion, on the lattice's 27-point quadrature.
+// Elastic energy of the interior: fixed corotational, robust to inversion, on the lattice's 27-point
+// quadrature.
 //   psi(F) = mu |F - R|^2 + lambda/2 (det F - 1)^2, R the rotation nearest to F by the signed SVD
 #ifndef RUGA_LATTICE_ELASTICITY_H
 #define RUGA_LATTICE_ELASTICITY_H
@@ -11,10 +12,13 @@
 
 typedef struct ruga_elasticity ruga_elasticity;
 
-// Precomputes shape gradients, weights (with a stiffness floor for elements with a sliver of material) and the
-// Hessian's pattern (lower triangle, 3 x 3 blocks over the lattice nodes) with its scatter map.
+// Precomputes shape gradients, weights (with a stiffness floor for elements with a sliver of material) and
+// the Hessian's pattern (lower triangle, 3 x 3 blocks over the lattice nodes) with its scatter map. The
+// lattice must outlive it. vertex_pattern: that of the vertex matrices which ruga_elasticity_add_embedded
+// will add (lower triangle 3 V x 3 V in 3 x 3 blocks, e.g. ruga_shell_pattern); only read here; NULL = none
+// will be added.
 ruga_status ruga_elasticity_create(const ruga_lattice* lattice, double young, double poisson,
-                                   ruga_elasticity** elasticity);
+                                   const ruga_sparse* vertex_pattern, ruga_elasticity** elasticity);
 void ruga_elasticity_destroy(ruga_elasticity** elasticity);
 
 const ruga_sparse* ruga_elasticity_pattern(const ruga_elasticity* elasticity);
@@ -31,8 +35,9 @@ ruga_status ruga_elasticity_mass(const ruga_elasticity* elasticity, double densi
                                  double* mass);
 
 // Adds B^T K B to hessian values of the pattern, for a symmetric vertex matrix K given as its lower triangle
-// (3 V x 3 V, as from shell/). The pattern holds all its blocks: it is made with the surface's embedding.
-void ruga_elasticity_add_embedded(const ruga_elasticity* elasticity, const ruga_sparse* vertex_matrix,
-                                  double* hessian);
+// (3 V x 3 V in 3 x 3 blocks, as from shell/). K may couple only vertices of elements that vertex_pattern
+// coupled; RUGA_BAD_INPUT otherwise.
+ruga_status ruga_elasticity_add_embedded(const ruga_elasticity* elasticity, const ruga_sparse* vertex_matrix,
+                                         double* hessian);
 
 #endif

@@ -7,7 +7,8 @@
 
 #include "lattice/lattice.h"
 
-// Node positions q [N][3] at `time`. Affine parts are exact; the bump goes through the local quasi-interpolant
+// Node positions q [N][3] at `time`. Affine parts are exact; the bump goes through the local
+// quasi-interpolant
 // (-1/8, 10/8, -1/8 per axis for degree 2) that reproduces quadratic fields.
 void ruga_motion_at(const ruga_lattice* lattice, const double center[3], int keyframe_count,
                     const ruga_keyframe_def* keyframes, double time, double* q);
