@@ -7,6 +7,10 @@
 
 #include "ruga/base.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // Sets this thread's error sentence (printf style) and returns `status`. Use: return ruga_fail(RUGA_IO, ...);
 ruga_status ruga_fail(ruga_status status, const char* format, ...) __attribute__((format(printf, 2, 3)));
 
@@ -36,5 +40,9 @@ void ruga_assert_failed(const char* condition, const char* file, int line);
 
 // Misuse by the programmer: never by input.
 #define RUGA_ASSERT(condition) ((condition) ? (void)0 : ruga_assert_failed(#condition, __FILE__, __LINE__))
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
