@@ -22,16 +22,19 @@
 
 #include "core/vec3.h"
 
-#include <float.h>
+// A triangle collapsed to a needle or a point has no angle, and must only not give infinities: lengths count
+// as at least this part of the triangle's size, and never below 1e-50 m.
+static const double COLLAPSED_SQUARE = 1e-20;
+static const double LEAST_SQUARE = 1e-100;
 
-// Heights below this part of the triangle's edges count as this large: a collapsed triangle has no angle, and
-// must only not give infinities.
-static const double HEIGHT_FLOOR_SQUARE = 1e-20;
+// |e|^2 and |n|^2 of the edge e and the normal n = e x d, kept above the floors.
+static double safe_length_square(const double e[3], const double d[3]) {
+    return fmax(ruga_dot(e, e), COLLAPSED_SQUARE * ruga_dot(d, d) + LEAST_SQUARE);
+}
 
-// |n|^2 of the normal n = e x d, kept above the floor.
-static double safe_square(const double n[3], const double e[3], const double d[3]) {
-    double ee = ruga_dot(e, e);
-    return fmax(ruga_dot(n, n), HEIGHT_FLOOR_SQUARE * ee * (ee + ruga_dot(d, d)) + DBL_MIN);
+static double safe_normal_square(const double n[3], const double e[3], const double d[3]) {
+    double size = ruga_dot(e, e) + ruga_dot(d, d);
+    return fmax(ruga_dot(n, n), COLLAPSED_SQUARE * size * size + LEAST_SQUARE);
 }
 
 double ruga_angle_difference(double a, double b) {
@@ -49,11 +52,11 @@ double ruga_hinge_angle(const double* const x[4], double gradient[4][3]) {
     ruga_subtract(x[3], x[0], d3);
     ruga_cross(e, d2, n2);
     ruga_cross(d3, e, n3);
-    double square = ruga_dot(e, e);
-    double length = sqrt(square);
+    double length = ruga_norm(e);
     if (gradient) {
-        double s2 = length / safe_square(n2, e, d2), s3 = length / safe_square(n3, e, d3);
-        double t2 = ruga_dot(d2, e) / fmax(square, DBL_MIN), t3 = ruga_dot(d3, e) / fmax(square, DBL_MIN);
+        double s2 = length / safe_normal_square(n2, e, d2), s3 = length / safe_normal_square(n3, e, d3);
+        double t2 = ruga_dot(d2, e) / safe_length_square(e, d2);
+        double t3 = ruga_dot(d3, e) / safe_length_square(e, d3);
         for (int c = 0; c < 3; c++) {
             double g2 = s2 * n2[c], g3 = s3 * n3[c];
             gradient[0][c] = -(1 - t2) * g2 - (1 - t3) * g3;
@@ -84,7 +87,7 @@ static void add_edge(const double* const x[3], int i, const double n[3], double 
     double e[3], d[3], m[3];
     ruga_subtract(x[corner[1]], x[corner[0]], e);
     ruga_subtract(x[corner[2]], x[corner[0]], d);
-    double square = fmax(ruga_dot(e, e), DBL_MIN);
+    double square = safe_length_square(e, d);
     double length = sqrt(square);
     double t = ruga_dot(d, e) / square, s = 1 - t;
     ruga_cross(n, e, m);
@@ -125,7 +128,7 @@ void ruga_hinge_add_hessian(const double* const x[3], const double moment[3],
     ruga_subtract(x[1], x[0], e);
     ruga_subtract(x[2], x[0], d);
     ruga_cross(e, d, n);
-    double normal_length = sqrt(safe_square(n, e, d));
+    double normal_length = sqrt(safe_normal_square(n, e, d));
     for (int c = 0; c < 3; c++) {
         n[c] /= normal_length;
     }
