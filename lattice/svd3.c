@@ -11,6 +11,7 @@
 
 #include <float.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SWEEPS_MAX = 40 }; // 4 to 6 are needed; the bound only guards against NaN
@@ -21,7 +22,7 @@ static const double CLOSE = 8 * DBL_EPSILON;
 // The smaller rotation (c, s) that makes the symmetric matrix [app apq; apq aqq] diagonal.
 static void symmetric_rotation(double app, double apq, double aqq, double* c, double* s) {
     double ratio = (aqq - app) / (2 * apq);
-    double t = isfinite(ratio) ? copysign(1, ratio) / (fabs(ratio) + hypot(1, ratio)) : 0;
+    double t = copysign(1, ratio) / (fabs(ratio) + sqrt(1 + ratio * ratio)); // 0 where ratio^2 overflows
     *c = 1 / sqrt(1 + t * t);
     *s = *c * t;
 }
@@ -94,11 +95,12 @@ void ruga_svd3(const double f[9], double u[9], double s[3], double v[9]) {
         s[0] = s[1] = s[2] = f[0] + f[4] + f[8]; // zero, or NaN where f is
         return;
     }
-    // A power of two: exact, and squares neither overflow nor underflow.
+    // Squares must neither overflow nor underflow; scaling by a power of two is exact.
     int exponent;
     frexp(largest, &exponent);
+    exponent = abs(exponent) > 100 ? exponent : 0;
     for (int i = 0; i < 9; i++) {
-        g[i] = ldexp(f[i], -exponent);
+        g[i] = exponent == 0 ? f[i] : ldexp(f[i], -exponent);
     }
     make_columns_orthogonal(g, v);
     sort_columns(g, v);
@@ -114,10 +116,11 @@ void ruga_svd3(const double f[9], double u[9], double s[3], double v[9]) {
         ruga_normalize(u1);
     }
     ruga_cross(u0, u1, u2);
-    s[0] = ldexp(s0, exponent);
-    s[1] = ldexp(s1, exponent);
-    s[2] = ldexp(ruga_dot(u2, g2), exponent);
+    s[0] = s0;
+    s[1] = s1;
+    s[2] = ruga_dot(u2, g2);
     for (int i = 0; i < 3; i++) {
+        s[i] = exponent == 0 ? s[i] : ldexp(s[i], exponent);
         u[3 * i] = u0[i];
         u[3 * i + 1] = u1[i];
         u[3 * i + 2] = u2[i];
