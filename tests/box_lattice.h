@@ -71,16 +71,6 @@ static inline void box_lattice(int degree, int nx, int ny, int nz, int vertices,
     }
 }
 
-static inline void box_lattice_clear(ruga_lattice* lattice) {
-    ruga_release(lattice->element_cell);
-    ruga_release(lattice->element_node);
-    ruga_release(lattice->volume);
-    ruga_release(lattice->rest);
-    ruga_release(lattice->vertex_element);
-    ruga_release(lattice->vertex_weight);
-    *lattice = (ruga_lattice){0};
-}
-
 // q = f (X - origin) + origin, plus noise
 static inline void box_deform(const ruga_lattice* lattice, const double f[9], double noise, double* q) {
     ruga_random random = {11};

@@ -286,7 +286,7 @@ static void make_body(int degree, int nx, int ny, int nz, body* b) {
 
 static void free_body(body* b) {
     ruga_elasticity_destroy(&b->elasticity);
-    box_lattice_clear(&b->lattice);
+    ruga_lattice_clear(&b->lattice);
     ruga_release(b->q);
     ruga_release(b->gradient);
     ruga_release(b->hessian);
@@ -636,7 +636,7 @@ static void vertex_masses_are_added_through_the_embedding(void** state) {
         ruga_release(mass);
         ruga_release(dense);
         ruga_elasticity_destroy(&e);
-        box_lattice_clear(&lattice);
+        ruga_lattice_clear(&lattice);
     }
 }
 
@@ -662,7 +662,7 @@ static void sliver_range(double fraction, double* low, double* high) {
     ruga_release(m);
     ruga_release(dense);
     ruga_elasticity_destroy(&b.elasticity);
-    box_lattice_clear(&b.lattice);
+    ruga_lattice_clear(&b.lattice);
 }
 
 static void slivers_leave_the_condition_number_bounded(void** state) {
@@ -708,7 +708,7 @@ static void make_embedded(int degree, embedded* m) {
 static void free_embedded(embedded* m) {
     ruga_elasticity_destroy(&m->elasticity);
     ruga_sparse_clear(&m->vertices);
-    box_lattice_clear(&m->lattice);
+    ruga_lattice_clear(&m->lattice);
 }
 
 // B as a dense matrix [3 V][3 N]
@@ -804,7 +804,7 @@ static void a_vertex_matrix_outside_the_pattern_is_refused(void** state) {
     ruga_release(hessian);
     ruga_elasticity_destroy(&e);
     ruga_sparse_clear(&vertices);
-    box_lattice_clear(&lattice);
+    ruga_lattice_clear(&lattice);
 }
 
 static void impossible_materials_are_refused(void** state) {
@@ -817,7 +817,7 @@ static void impossible_materials_are_refused(void** state) {
         assert_status(ruga_elasticity_create(&lattice, bad[k][0], bad[k][1], NULL, &e), RUGA_BAD_INPUT);
         assert_null(e);
     }
-    box_lattice_clear(&lattice);
+    ruga_lattice_clear(&lattice);
 }
 
 static void* allocate_while_allowed(size_t size, void* context) {

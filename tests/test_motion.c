@@ -66,7 +66,7 @@ static void affine_motion_is_exact_and_linear_between_keyframes(void** state) {
             }
             ruga_release(q);
         }
-        box_lattice_clear(&lattice);
+        ruga_lattice_clear(&lattice);
     }
 }
 
@@ -92,7 +92,7 @@ static void motion_is_held_before_and_after_the_keyframes(void** state) {
         assert_near(none[i], lattice.rest[i], 1e-15);
     }
     ruga_release(none);
-    box_lattice_clear(&lattice);
+    ruga_lattice_clear(&lattice);
 }
 
 // A very wide bump is its own Taylor polynomial: depth (1 - r^2 / (2 R^2)) up to (r / R)^4.
@@ -120,7 +120,7 @@ static void quadratic_displacement_is_reproduced(void** state) {
         assert_near(now[2], rest[2] + height / sqrt(5), 1e-6);
     }
     ruga_release(q);
-    box_lattice_clear(&lattice);
+    ruga_lattice_clear(&lattice);
 }
 
 // Largest error of a bump of radius 1 sampled on an n^3-cell lattice of edges of about 4.
@@ -155,7 +155,7 @@ static double bump_error(int degree, int n) {
         }
     }
     ruga_release(q);
-    box_lattice_clear(&lattice);
+    ruga_lattice_clear(&lattice);
     return largest;
 }
 
@@ -204,7 +204,7 @@ static void bump_grows_in_place_from_a_keyframe_without_one(void** state) {
     }
     ruga_release(half);
     ruga_release(full);
-    box_lattice_clear(&lattice);
+    ruga_lattice_clear(&lattice);
 }
 
 static void largest_compression_is_that_of_the_smallest_singular_value(void** state) {
