@@ -69,18 +69,10 @@ double ruga_hinge_angle(const double* const x[4], double gradient[4][3]) {
     return atan2(length * ruga_dot(d3, n2), ruga_dot(n2, n3));
 }
 
-// block += s a b^T
-static void add_outer(double s, const double a[3], const double b[3], double block[9]) {
-    for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 3; c++) {
-            block[3 * r + c] += s * a[r] * b[c];
-        }
-    }
-}
-
-// The six blocks above, times the moment, for the edge from corner i to corner i + 1.
+// Every block above is a n^T + n b^T with the triangle's n. Adds the a and b of the six blocks, times the
+// moment, for the edge from corner i to corner i + 1.
 static void add_edge(const double* const x[3], int i, const double n[3], double normal_length, double moment,
-                     double block[RUGA_TRIANGLE_BLOCKS][9]) {
+                     double a[RUGA_TRIANGLE_BLOCKS][3], double b[RUGA_TRIANGLE_BLOCKS][3]) {
     // Number of the lower block of two corners.
     static const int lower[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
     const int corner[3] = {i, (i + 1) % 3, (i + 2) % 3};
@@ -111,14 +103,11 @@ static void add_edge(const double* const x[3], int i, const double n[3], double 
         bool transposed = row < column;
         double r = transposed ? term[k].r_transposed : term[k].r;
         double r_transposed = transposed ? term[k].r : term[k].r_transposed;
-        double a[3], b[3]; // M and R share n: a n^T + n b^T
+        int target = lower[row][column];
         for (int c = 0; c < 3; c++) {
-            a[c] = term[k].m * m[c] + r * e[c];
-            b[c] = term[k].m * m[c] + r_transposed * e[c];
+            a[target][c] += term[k].m * m[c] + r * e[c];
+            b[target][c] += term[k].m * m[c] + r_transposed * e[c];
         }
-        double* target = block[lower[row][column]];
-        add_outer(1, a, n, target);
-        add_outer(1, n, b, target);
     }
 }
 
@@ -132,9 +121,17 @@ void ruga_hinge_add_hessian(const double* const x[3], const double moment[3],
     for (int c = 0; c < 3; c++) {
         n[c] /= normal_length;
     }
+    double a[RUGA_TRIANGLE_BLOCKS][3] = {{0}}, b[RUGA_TRIANGLE_BLOCKS][3] = {{0}};
     for (int i = 0; i < 3; i++) {
         if (moment[i] != 0) {
-            add_edge(x, i, n, normal_length, moment[i], block);
+            add_edge(x, i, n, normal_length, moment[i], a, b);
+        }
+    }
+    for (int k = 0; k < RUGA_TRIANGLE_BLOCKS; k++) {
+        for (int r = 0; r < 3; r++) {
+            for (int c = 0; c < 3; c++) {
+                block[k][3 * r + c] += a[k][r] * n[c] + n[r] * b[k][c];
+            }
         }
     }
 }

@@ -100,8 +100,9 @@ static void set_fibre(bool baraff_witkin, point* p, int a, double* strain, doubl
         *strain = (regular ? length : 0.5 * (square / LENGTH_FLOOR + LENGTH_FLOOR)) - 1;
         p->z[a] = regular;
     }
+    double scale = 1 / *measure;
     for (int c = 0; c < 3; c++) {
-        p->f[a][c] = p->w[a][c] / *measure;
+        p->f[a][c] = scale * p->w[a][c];
     }
 }
 
@@ -144,7 +145,8 @@ double ruga_membrane_energy(ruga_membrane kind, double poisson, const ruga_membr
 // eigenvector of the smaller eigenvalue l2 is (l1 I - a) / (l1 - l2).
 static void scale_negative(double clamp, double a[3]) {
     double mean = 0.5 * (a[0] + a[2]);
-    double radius = hypot(0.5 * (a[0] - a[2]), a[1]);
+    double half = 0.5 * (a[0] - a[2]);
+    double radius = sqrt(half * half + a[1] * a[1]);
     double l1 = mean + radius, l2 = mean - radius;
     if (l2 >= 0) {
         return;

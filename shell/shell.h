@@ -19,6 +19,7 @@ typedef struct ruga_shell_material {
     const double* young;     // [F] Pa, or NULL
 } ruga_shell_material;
 
+// RUGA_BAD_INPUT or RUGA_BAD_MESH names the field, or the face and where it is. Nothing of the arguments is kept.
 ruga_status ruga_shell_create(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
                               const ruga_shell_material* material, ruga_shell** shell);
 void ruga_shell_destroy(ruga_shell** shell);
@@ -32,13 +33,14 @@ typedef struct ruga_shell_energies {
 } ruga_shell_energies;
 
 // Energy at x [V][3]; gradient [V][3] (= minus force) and hessian (values of the pattern) are SET where not
-// NULL. clamp in [0, 1]: 0 = the exact Hessian; otherwise the geometric stiffness of compressive principal
+// NULL; energies may be NULL. Allocates nothing: it works in scratch of the shell, so that one shell serves one
+// thread at a time. The same bits for any number of threads. clamp in [0, 1]: 0 = the exact Hessian; otherwise the geometric stiffness of compressive principal
 // membrane stress is multiplied by (1 - clamp), and a hinge's Hessian is clamp * Gauss-Newton + (1 - clamp) * exact.
-// With clamp = 1 the Hessian is positive semi-definite.
+// With clamp = 1 the Hessian is positive semi-definite. Finite also where triangles have collapsed.
 ruga_status ruga_shell_energy(const ruga_shell* shell, const double* x, double clamp,
                               ruga_shell_energies* energies, double* gradient, double* hessian);
 
-// Lumped mass of each vertex, kg, [V].
+// Lumped mass of each vertex, kg, [V]: a third of its triangles', after growth.
 void ruga_shell_vertex_mass(const ruga_shell* shell, double* mass);
 
 // Paper eq. 3 in m, and (1/4) (3 E*_q / E*_x)^(2/3), E* = E / (1 - nu^2).
