@@ -1,2 +1,725 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
+//
+// Multifrontal A = S^-1 L D L^T S^-1 (up to permutation) of symmetric indefinite matrices: S a diagonal
+// scaling by powers of two, L unit lower triangular, D with blocks 1x1 and 2x2. The inertia of A is that of
+// D (Sylvester). Fronts are assembled from the matrix and the update matrices of their children, factored
+// (ldl_front.c), and hand on what is left: the update matrix and the columns without a stable pivot.
+//
+// Independent subtrees are tasks with memory of their own: an index list and panels of L, which only grow,
+// and a stack of update matrices. Which task a front belongs to depends on the matrix alone, and so do all
+// sums: the bits are the same for any number of threads.
+#include "solver/ldl.h"
+
+#include "core/memory.h"
+#include "core/parallel.h"
+
+#include <cblas.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// Storage of a task. Places in it are kept as offsets, since it moves when delayed pivots make it grow.
+typedef struct task_memory {
+    double* factor; // per front: panel [eliminated][rows], then D^-1 [eliminated][2]
+    size_t factor_used, factor_capacity;
+    int* index; // per front: steps of its rows, pivots first
+    size_t index_used, index_capacity;
+    double* stack; // per front: update [below]^2, delayed [late][late + below], peak [late]
+    size_t stack_used, stack_peak, stack_capacity;
+    double* work; // pivots and peaks of one front, tile of L D
+    size_t work_capacity;
+    int positive, negative, zero;
+    double entries, flops;
+    ruga_status status;
+} task_memory;
+
+typedef struct front_record {
+    size_t factor, index, update; // offsets in its task's memory
+    int task, rows, full, eliminated;
+} front_record;
+
+struct ruga_ldl {
+    ruga_ldl_symbolic symbolic;
+    ruga_sparse matrix; // the pattern, with the values of S A S
+    bool* last;         // [n] unknowns of multiplier nodes
+    double* scale;      // [n] S
+    int* child;         // [count] first child of a supernode, -1 = none
+    int* sibling;       // [count]
+    front_record* front; // [count]
+    task_memory* memory; // [task_count + 1], the last one for the top
+    bool planned, ready;
+    int widest;             // rows of the largest front
+    double *load, *answer;  // [n] by step
+    double *defect, *guess; // [n] scaled, by unknown
+    double* gather;         // [gather_capacity >= widest]
+    int gather_capacity;
+};
+
+void ruga_ldl_destroy(ruga_ldl** ldl) {
+    ruga_ldl* f = *ldl;
+    if (!f) {
+        return;
+    }
+    for (int t = 0; f->memory && t <= f->symbolic.task_count; t++) {
+        ruga_release(f->memory[t].factor);
+        ruga_release(f->memory[t].index);
+        ruga_release(f->memory[t].stack);
+        ruga_release(f->memory[t].work);
+    }
+    ruga_release(f->memory);
+    ruga_ldl_symbolic_clear(&f->symbolic);
+    ruga_sparse_clear(&f->matrix);
+    ruga_release(f->last);
+    ruga_release(f->scale);
+    ruga_release(f->child);
+    ruga_release(f->sibling);
+    ruga_release(f->front);
+    ruga_release(f->load);
+    ruga_release(f->answer);
+    ruga_release(f->defect);
+    ruga_release(f->guess);
+    ruga_release(f->gather);
+    ruga_release(f);
+    *ldl = NULL;
+}
+
+static ruga_status copy_pattern(const ruga_sparse* lower, ruga_sparse* copy) {
+    int n = lower->columns;
+    *copy = (ruga_sparse){.rows = n, .columns = n};
+    RUGA_TRY(RUGA_NEW(copy->start, n + 1));
+    RUGA_TRY(RUGA_NEW(copy->index, lower->start[n]));
+    RUGA_TRY(RUGA_NEW_ZERO(copy->value, lower->start[n]));
+    memcpy(copy->start, lower->start, (size_t)(n + 1) * sizeof(int));
+    memcpy(copy->index, lower->index, (size_t)lower->start[n] * sizeof(int));
+    return RUGA_OK;
+}
+
+static void mark_last(ruga_ldl* f, int node_count, const int* node_start, const bool* last) {
+    for (int i = 0; i < node_count; i++) {
+        int begin = node_start ? node_start[i] : i, end = node_start ? node_start[i + 1] : i + 1;
+        for (int u = begin; u < end; u++) {
+            f->last[u] = last && last[i];
+        }
+    }
+}
+
+static void list_children(ruga_ldl* f) {
+    const ruga_ldl_symbolic* s = &f->symbolic;
+    for (int k = 0; k < s->count; k++) {
+        f->child[k] = -1;
+    }
+    for (int k = s->count - 1; k >= 0; k--) {
+        if (s->parent[k] >= 0) {
+            f->sibling[k] = f->child[s->parent[k]];
+            f->child[s->parent[k]] = k;
+        }
+    }
+    for (int t = 0; t < s->task_count; t++) {
+        for (int k = s->task[t]; k < s->task[t + 1]; k++) {
+            f->front[k].task = t;
+        }
+    }
+    for (int k = 0; k < s->count; k++) {
+        if (s->top[k]) {
+            f->front[k].task = s->task_count;
+        }
+    }
+}
+
+ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start,
+                            const bool* last, ruga_ldl** ldl) {
+    ruga_status status = RUGA_OK;
+    int n = lower->columns;
+    ruga_ldl* f = NULL;
+    *ldl = NULL;
+    RUGA_TRY(RUGA_NEW_ZERO(f, 1));
+    RUGA_TRY_DONE(ruga_ldl_analyse(lower, node_count, node_start, last, &f->symbolic));
+    RUGA_TRY_DONE(copy_pattern(lower, &f->matrix));
+    RUGA_TRY_DONE(RUGA_NEW(f->last, n));
+    RUGA_TRY_DONE(RUGA_NEW(f->scale, n));
+    RUGA_TRY_DONE(RUGA_NEW(f->child, f->symbolic.count));
+    RUGA_TRY_DONE(RUGA_NEW(f->sibling, f->symbolic.count));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(f->front, f->symbolic.count));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(f->memory, f->symbolic.task_count + 1));
+    RUGA_TRY_DONE(RUGA_NEW(f->load, n));
+    RUGA_TRY_DONE(RUGA_NEW(f->answer, n));
+    RUGA_TRY_DONE(RUGA_NEW(f->defect, n));
+    RUGA_TRY_DONE(RUGA_NEW(f->guess, n));
+    mark_last(f, node_start ? node_count : n, node_start, last);
+    list_children(f);
+    *ldl = f;
+done:
+    if (status != RUGA_OK) {
+        ruga_ldl_destroy(&f);
+    }
+    return status;
+}
+
+size_t ruga_ldl_bytes(const ruga_ldl* f) {
+    size_t n = (size_t)f->symbolic.n, entries = (size_t)f->matrix.start[n];
+    size_t bytes = ruga_ldl_symbolic_bytes(&f->symbolic);
+    bytes += entries * (sizeof(double) + sizeof(int)) + n * (5 * sizeof(double) + sizeof(int) + sizeof(bool));
+    bytes += (size_t)f->symbolic.count * (sizeof(front_record) + 2 * sizeof(int));
+    bytes += (size_t)f->gather_capacity * sizeof(double);
+    for (int t = 0; t <= f->symbolic.task_count; t++) {
+        const task_memory* m = &f->memory[t];
+        bytes += (m->factor_capacity + m->stack_capacity + m->work_capacity) * sizeof(double) +
+                 m->index_capacity * sizeof(int);
+    }
+    return bytes;
+}
+
+// max[i] = max_j |a_ij| scale_i scale_j
+static void row_maxima(const ruga_sparse* a, const double* values, const double* scale, double* max) {
+    memset(max, 0, (size_t)a->columns * sizeof *max);
+    for (int j = 0; j < a->columns; j++) {
+        double column_max = 0;
+        for (int p = a->start[j]; p < a->start[j + 1]; p++) {
+            int i = a->index[p];
+            double size = fabs(values[p]) * scale[i] * scale[j];
+            max[i] = size > max[i] ? size : max[i];
+            column_max = size > column_max ? size : column_max;
+        }
+        max[j] = column_max > max[j] ? column_max : max[j];
+    }
+}
+
+// The power of two next below x > 0: scaling by it rounds nothing.
+static double power_below(double x) {
+    int exponent;
+    (void)frexp(x, &exponent);
+    return ldexp(1, exponent - 1);
+}
+
+// Rows and columns to largest entries near 1: first those of K by themselves (Ruiz 2001), then those of the
+// multipliers, so that H weighs as much as K whatever its unit.
+static void scale_matrix(ruga_ldl* f, const double* values) {
+    int n = f->symbolic.n;
+    double *scale = f->scale, *max = f->defect;
+    for (int i = 0; i < n; i++) {
+        scale[i] = f->last[i] ? 0 : 1;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        row_maxima(&f->matrix, values, scale, max);
+        for (int i = 0; i < n; i++) {
+            scale[i] = max[i] > 0 ? scale[i] / sqrt(max[i]) : scale[i];
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        scale[i] = f->last[i] ? 1 : power_below(scale[i]);
+    }
+    row_maxima(&f->matrix, values, scale, max);
+    for (int i = 0; i < n; i++) {
+        if (f->last[i] && max[i] > 0) {
+            scale[i] = power_below(1 / max[i]);
+        }
+    }
+    for (int j = 0; j < n; j++) {
+        for (int p = f->matrix.start[j]; p < f->matrix.start[j + 1]; p++) {
+            f->matrix.value[p] = values[p] * scale[j] * scale[f->matrix.index[p]];
+        }
+    }
+}
+
+static ruga_status check_finite(const ruga_sparse* a, const double* values) {
+    for (int j = 0; j < a->columns; j++) {
+        for (int p = a->start[j]; p < a->start[j + 1]; p++) {
+            if (!isfinite(values[p])) {
+                return ruga_fail(RUGA_BAD_INPUT, "entry (%d, %d) of the system matrix is %g: the state before it is not valid",
+                                 a->index[p], j, values[p]);
+            }
+        }
+    }
+    return RUGA_OK;
+}
+
+// Room for `count` more elements; what grows, grows by half at least.
+static ruga_status make_room(void** memory, size_t* capacity, size_t count, size_t size) {
+    if (count <= *capacity) {
+        return RUGA_OK;
+    }
+    size_t wanted = count > *capacity + *capacity / 2 ? count : *capacity + *capacity / 2;
+    void* grown = ruga_reallocate(*memory, wanted * size);
+    if (!grown) {
+        return ruga_fail(RUGA_NO_MEMORY, "out of memory: the factor needs %zu MB more", (wanted * size) >> 20);
+    }
+    *memory = grown;
+    *capacity = wanted;
+    return RUGA_OK;
+}
+
+// A front while it is made.
+typedef struct assembly {
+    ruga_ldl* ldl;
+    task_memory* memory;
+    int s, own, late, below; // pivots of its own, delayed ones of children, rows that stay
+    ruga_front front;
+    size_t base;    // of the stack, under the children's updates
+    double* update; // [below]^2
+} assembly;
+
+static double* delayed_of(const ruga_ldl* f, int c, const double** update, int* late, int* below) {
+    const front_record* r = &f->front[c];
+    double* begin = f->memory[r->task].stack + r->update;
+    *update = begin;
+    *below = r->rows - r->full;
+    *late = r->full - r->eliminated;
+    return begin + (size_t)*below * (size_t)*below;
+}
+
+static ruga_status reserve_front(assembly* a) {
+    ruga_ldl* f = a->ldl;
+    const ruga_ldl_symbolic* s = &f->symbolic;
+    task_memory* m = a->memory;
+    a->base = m->stack_used;
+    for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
+        a->late += f->front[c].full - f->front[c].eliminated;
+        if (f->front[c].task == f->front[a->s].task && f->front[c].update < a->base) {
+            a->base = f->front[c].update;
+        }
+    }
+    a->own = s->pivot[a->s + 1] - s->pivot[a->s];
+    a->below = (int)(s->row_start[a->s + 1] - s->row_start[a->s]);
+    size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below;
+    size_t update = (size_t)a->below * (size_t)a->below;
+    RUGA_TRY(make_room((void**)&m->factor, &m->factor_capacity, m->factor_used + full * (rows + 2),
+                       sizeof(double)));
+    RUGA_TRY(make_room((void**)&m->index, &m->index_capacity, m->index_used + rows, sizeof(int)));
+    RUGA_TRY(make_room((void**)&m->stack, &m->stack_capacity, m->stack_used + update, sizeof(double)));
+    size_t tiles = s->top[a->s] ? (size_t)ruga_chunk_count(a->below, RUGA_FRONT_TILE) : 1;
+    tiles = tiles ? tiles : 1;
+    RUGA_TRY(make_room((void**)&m->work, &m->work_capacity, (tiles * RUGA_FRONT_TILE + 3) * full,
+                       sizeof(double)));
+    a->update = m->stack + m->stack_used;
+    a->front = (ruga_front){.rows = (int)rows, .full = (int)full};
+    a->front.a = m->factor + m->factor_used;
+    a->front.index = m->index + m->index_used;
+    a->front.pivot = m->work;
+    a->front.peak = m->work + 2 * full;
+    a->front.work = m->work + 3 * full;
+    a->front.must_finish = s->parent[a->s] < 0;
+    memset(a->front.a, 0, full * rows * sizeof(double));
+    memset(a->update, 0, update * sizeof(double));
+    memset(a->front.peak, 0, full * sizeof(double));
+    return RUGA_OK;
+}
+
+static void assemble_matrix(assembly* a) {
+    const ruga_ldl_symbolic* s = &a->ldl->symbolic;
+    size_t rows = (size_t)a->front.rows;
+    for (int k = s->entry_start[a->s]; k < s->entry_start[a->s + 1]; k++) {
+        int i = s->entry_row[k], j = s->entry_column[k];
+        a->front.a[(size_t)j * rows + (size_t)(i < a->own ? i : i + a->late)] +=
+            a->ldl->matrix.value[s->entry[k]];
+    }
+    for (int j = 0; j < a->own; j++) {
+        a->front.peak[j] = fabs(a->front.a[(size_t)j * rows + (size_t)j]);
+        a->front.index[j] = s->pivot[a->s] + j;
+    }
+    for (int i = 0; i < a->below; i++) {
+        a->front.index[a->own + a->late + i] = s->row[s->row_start[a->s] + (size_t)i];
+    }
+}
+
+// Adds child c's update matrix: rows and columns at place[], those from `own` on into our own update.
+static void add_update(assembly* a, const int* place, int below, const double* update) {
+    int split = 0;
+    while (split < below && place[split] < a->own) {
+        split++;
+    }
+    for (int j = 0; j < below; j++) {
+        const double* from = update + (size_t)j * (size_t)below;
+        if (j < split) {
+            double* to = a->front.a + (size_t)place[j] * (size_t)a->front.rows;
+            a->front.peak[place[j]] += fabs(from[j]);
+            for (int i = j; i < split; i++) {
+                to[place[i]] += from[i];
+            }
+            for (int i = split; i < below; i++) {
+                to[place[i] + a->late] += from[i];
+            }
+        } else {
+            double* to = a->update + (size_t)(place[j] - a->own) * (size_t)a->below;
+            for (int i = j; i < below; i++) {
+                to[place[i] - a->own] += from[i];
+            }
+        }
+    }
+}
+
+// Places child c's delayed columns at [column, column + late) of our front.
+static void add_delayed(assembly* a, int c, int column, const int* place, int late, int below,
+                        const double* delayed) {
+    const front_record* r = &a->ldl->front[c];
+    const int* index = a->ldl->memory[r->task].index + r->index + r->eliminated;
+    size_t rows = (size_t)a->front.rows, height = (size_t)(late + below);
+    for (int q = 0; q < late; q++) {
+        const double* from = delayed + (size_t)q * height;
+        double* to = a->front.a + (size_t)(column + q) * rows;
+        for (int i = q; i < late; i++) {
+            to[column + i] = from[i];
+        }
+        for (int i = 0; i < below; i++) {
+            if (place[i] < a->own) {
+                a->front.a[(size_t)place[i] * rows + (size_t)(column + q)] = from[late + i];
+            } else {
+                to[place[i] + a->late] = from[late + i];
+            }
+        }
+        a->front.peak[column + q] = delayed[(size_t)late * height + (size_t)q];
+        a->front.index[column + q] = index[q];
+    }
+}
+
+static void assemble_children(assembly* a) {
+    const ruga_ldl* f = a->ldl;
+    int column = a->own;
+    for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
+        const double* update;
+        int late, below;
+        const double* delayed = delayed_of(f, c, &update, &late, &below);
+        const int* place = f->symbolic.place + f->symbolic.row_start[c];
+        add_update(a, place, below, update);
+        add_delayed(a, c, column, place, late, below, delayed);
+        column += late;
+    }
+}
+
+typedef struct update_job {
+    const ruga_front* front;
+    double *work, *update; // work: a tile for each chunk
+} update_job;
+
+static void update_tile(int begin, int end, int chunk, void* context) {
+    const update_job* job = context;
+    double* work = job->work + (size_t)chunk * RUGA_FRONT_TILE * (size_t)job->front->full;
+    ruga_front_update(job->front, begin, end, work, job->update);
+}
+
+// The fronts at the top are few and large: their tiles are shared out. Below, tasks run side by side.
+static void update_below(assembly* a) {
+    if (a->ldl->symbolic.top[a->s]) {
+        update_job job = {&a->front, a->front.work, a->update};
+        ruga_parallel_for(a->below, RUGA_FRONT_TILE, update_tile, &job);
+    } else {
+        ruga_front_update(&a->front, 0, a->below, a->front.work, a->update);
+    }
+}
+
+// Hands on the update matrix and the delayed columns, on the stack in the children's place, and keeps L.
+static ruga_status store_front(assembly* a) {
+    task_memory* m = a->memory;
+    const ruga_front* f = &a->front;
+    front_record* record = &a->ldl->front[a->s];
+    size_t update = (size_t)a->below * (size_t)a->below, rows = (size_t)f->rows;
+    size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, height = rows - done;
+    memmove(m->stack + a->base, a->update, update * sizeof(double));
+    size_t used = a->base + update + late * (height + 1);
+    RUGA_TRY(make_room((void**)&m->stack, &m->stack_capacity, used, sizeof(double)));
+    double* delayed = m->stack + a->base + update;
+    for (size_t q = 0; q < late; q++) {
+        memcpy(delayed + q * height, f->a + (done + q) * rows + done, height * sizeof(double));
+        delayed[late * height + q] = f->peak[done + q];
+    }
+    double* inverse = m->factor + m->factor_used + done * rows;
+    memcpy(inverse, f->pivot, 2 * done * sizeof(double));
+    *record = (front_record){.factor = m->factor_used, .index = m->index_used, .update = a->base,
+                             .task = record->task, .rows = f->rows, .full = f->full,
+                             .eliminated = f->eliminated};
+    m->factor_used += done * (rows + 2);
+    m->index_used += rows;
+    m->stack_used = used;
+    return RUGA_OK;
+}
+
+// D becomes D^-1; the inverse of a zero pivot is zero, so that its unknown is zero in every solution.
+static void invert_pivots(ruga_front* f) {
+    for (int k = 0; k < f->eliminated; k++) {
+        double* d = f->pivot + 2 * (size_t)k;
+        if (d[1] == 0) {
+            d[0] = d[0] == 0 ? 0 : 1 / d[0];
+            continue;
+        }
+        double a = d[0], b = d[1], c = d[2], determinant = a * c - b * b;
+        d[0] = c / determinant;
+        d[1] = -b / determinant;
+        d[2] = a / determinant;
+        k++;
+    }
+}
+
+static ruga_status factor_front(ruga_ldl* f, int s) {
+    assembly a = {.ldl = f, .memory = &f->memory[f->front[s].task], .s = s};
+    task_memory* m = a.memory;
+    RUGA_TRY(reserve_front(&a));
+    assemble_matrix(&a);
+    assemble_children(&a);
+    ruga_front_factor(&a.front);
+    if (a.below > 0 && a.front.eliminated > 0) {
+        update_below(&a);
+    }
+    double w = a.front.eliminated, r = a.front.rows - w;
+    m->entries += w * (w + 1) / 2 + w * r;
+    m->flops += w * r * r + w * w * r + w * w * w / 3;
+    m->positive += a.front.positive;
+    m->negative += a.front.negative;
+    m->zero += a.front.zero;
+    invert_pivots(&a.front);
+    return store_front(&a);
+}
+
+static void factor_tasks(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    ruga_ldl* f = context;
+    const ruga_ldl_symbolic* s = &f->symbolic;
+    for (int t = begin; t < end; t++) {
+        task_memory* m = &f->memory[t];
+        for (int k = s->task[t]; k < s->task[t + 1] && m->status == RUGA_OK; k++) {
+            if (!s->top[k]) {
+                m->status = factor_front(f, k);
+            }
+        }
+    }
+}
+
+static ruga_status factor_top(ruga_ldl* f) {
+    const ruga_ldl_symbolic* s = &f->symbolic;
+    for (int k = 0; k < s->count; k++) {
+        if (s->top[k]) {
+            RUGA_TRY(factor_front(f, k));
+        }
+    }
+    return RUGA_OK;
+}
+
+// What each task needs where no pivot is delayed: then nothing is allocated after the first factorisation,
+// and in the first one nothing is moved.
+static ruga_status plan_tasks(ruga_ldl* f) {
+    const ruga_ldl_symbolic* s = &f->symbolic;
+    for (int k = 0; k < s->count; k++) {
+        task_memory* m = &f->memory[f->front[k].task];
+        size_t own = (size_t)(s->pivot[k + 1] - s->pivot[k]), base = m->stack_used;
+        size_t below = s->row_start[k + 1] - s->row_start[k], update = below * below;
+        for (int c = f->child[k]; c >= 0; c = f->sibling[c]) {
+            if (f->front[c].task == f->front[k].task && f->front[c].update < base) {
+                base = f->front[c].update;
+            }
+        }
+        size_t peak = m->stack_used + update;
+        f->front[k].update = base;
+        m->stack_used = base + update;
+        m->factor_used += own * (own + below + 2);
+        m->index_used += own + below;
+        m->stack_peak = peak > m->stack_peak ? peak : m->stack_peak;
+    }
+    for (int t = 0; t <= s->task_count; t++) {
+        task_memory* m = &f->memory[t];
+        RUGA_TRY(make_room((void**)&m->factor, &m->factor_capacity, m->factor_used, sizeof(double)));
+        RUGA_TRY(make_room((void**)&m->index, &m->index_capacity, m->index_used, sizeof(int)));
+        RUGA_TRY(make_room((void**)&m->stack, &m->stack_capacity, m->stack_peak, sizeof(double)));
+    }
+    return RUGA_OK;
+}
+
+static void start_tasks(ruga_ldl* f) {
+    for (int t = 0; t <= f->symbolic.task_count; t++) {
+        task_memory* m = &f->memory[t];
+        m->factor_used = m->index_used = m->stack_used = 0;
+        m->positive = m->negative = m->zero = 0;
+        m->entries = m->flops = 0;
+        m->status = RUGA_OK;
+    }
+}
+
+static ruga_status finish(ruga_ldl* f, ruga_factor_info* info) {
+    *info = (ruga_factor_info){0};
+    for (int t = 0; t <= f->symbolic.task_count; t++) {
+        const task_memory* m = &f->memory[t];
+        info->positive += m->positive;
+        info->negative += m->negative;
+        info->zero += m->zero;
+        info->entries += m->entries;
+        info->flops += m->flops;
+    }
+    info->perturbed = info->zero;
+    info->success = info->zero == 0;
+    for (int k = 0; k < f->symbolic.count; k++) {
+        f->widest = f->front[k].rows > f->widest ? f->front[k].rows : f->widest;
+    }
+    RUGA_TRY(RUGA_RESERVE(f->gather, f->gather_capacity, f->widest));
+    f->ready = true;
+    return RUGA_OK;
+}
+
+ruga_status ruga_ldl_numeric(ruga_ldl* f, const double* values, ruga_factor_info* info) {
+    f->ready = false;
+    RUGA_TRY(check_finite(&f->matrix, values));
+    scale_matrix(f, values);
+    if (!f->planned) {
+        start_tasks(f);
+        RUGA_TRY(plan_tasks(f));
+        f->planned = true;
+    }
+    start_tasks(f);
+    ruga_parallel_for(f->symbolic.task_count, 1, factor_tasks, f);
+    for (int t = 0; t < f->symbolic.task_count; t++) {
+        if (f->memory[t].status != RUGA_OK) { // its sentence may belong to another thread
+            return ruga_fail(f->memory[t].status, "out of memory in the factorisation of %d unknowns",
+                             f->symbolic.n);
+        }
+    }
+    RUGA_TRY(factor_top(f));
+    return finish(f, info);
+}
+
+static void solve_forward(ruga_ldl* f, double* x) {
+    for (int s = 0; s < f->symbolic.count; s++) {
+        const front_record* r = &f->front[s];
+        const double* l = f->memory[r->task].factor + r->factor;
+        const int* index = f->memory[r->task].index + r->index;
+        int done = r->eliminated, below = r->rows - done;
+        double *pivots = f->gather, *rest = f->gather + done;
+        for (int i = 0; i < done; i++) {
+            pivots[i] = x[index[i]];
+        }
+        if (done == 0) {
+            continue;
+        }
+        cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasUnit, done, l, r->rows, pivots, 1);
+        if (below > 0) {
+            cblas_dgemv(CblasColMajor, CblasNoTrans, below, done, 1, l + done, r->rows, pivots, 1, 0, rest, 1);
+        }
+        for (int i = 0; i < done; i++) {
+            x[index[i]] = pivots[i];
+        }
+        for (int i = 0; i < below; i++) {
+            x[index[done + i]] -= rest[i];
+        }
+    }
+}
+
+static void solve_backward(ruga_ldl* f, double* x) {
+    for (int s = f->symbolic.count - 1; s >= 0; s--) {
+        const front_record* r = &f->front[s];
+        const double* l = f->memory[r->task].factor + r->factor;
+        const int* index = f->memory[r->task].index + r->index;
+        int done = r->eliminated, below = r->rows - done;
+        double *pivots = f->gather, *rest = f->gather + done;
+        for (int i = 0; i < r->rows; i++) {
+            f->gather[i] = x[index[i]];
+        }
+        if (done == 0) {
+            continue;
+        }
+        if (below > 0) {
+            cblas_dgemv(CblasColMajor, CblasTrans, below, done, -1, l + done, r->rows, rest, 1, 1, pivots, 1);
+        }
+        cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasUnit, done, l, r->rows, pivots, 1);
+        for (int i = 0; i < done; i++) {
+            x[index[i]] = pivots[i];
+        }
+    }
+}
+
+// M = D^-1 or, absolute, |D^-1| = (M^2 + |det M| I) / sqrt(tr M^2 + 2 |det M|) for blocks (Cayley-Hamilton).
+static void apply_pair(const double d[4], bool absolute, double* x, double* y) {
+    double a = d[0], b = d[1], c = d[2];
+    if (absolute) {
+        double det = fabs(a * c - b * b), trace = a * a + 2 * b * b + c * c;
+        double root = sqrt(trace + 2 * det), off = b * (a + c);
+        double first = a * a + b * b + det, second = b * b + c * c + det;
+        a = first / root;
+        b = off / root;
+        c = second / root;
+    }
+    double sum = a * *x + b * *y;
+    *y = b * *x + c * *y;
+    *x = sum;
+}
+
+static void solve_diagonal(ruga_ldl* f, bool absolute, double* x) {
+    for (int s = 0; s < f->symbolic.count; s++) {
+        const front_record* r = &f->front[s];
+        const double* d = f->memory[r->task].factor + r->factor + (size_t)r->eliminated * (size_t)r->rows;
+        const int* index = f->memory[r->task].index + r->index;
+        for (int k = 0; k < r->eliminated; k++) {
+            if (d[2 * k + 1] != 0) {
+                apply_pair(d + 2 * (size_t)k, absolute, &x[index[k]], &x[index[k + 1]]);
+                k++;
+            } else if (absolute) { // where D is zero, any positive number serves
+                x[index[k]] *= d[2 * k] == 0 ? 1 : fabs(d[2 * k]);
+            } else {
+                x[index[k]] *= d[2 * k];
+            }
+        }
+    }
+}
+
+// y = (L D L^T)^-1 b with scaled b and y, by unknown; may be the same.
+static void solve_scaled(ruga_ldl* f, bool absolute, const double* b, double* y) {
+    const int* order = f->symbolic.order;
+    double* x = f->answer;
+    for (int k = 0; k < f->symbolic.n; k++) {
+        x[k] = b[order[k]];
+    }
+    solve_forward(f, x);
+    solve_diagonal(f, absolute, x);
+    solve_backward(f, x);
+    for (int k = 0; k < f->symbolic.n; k++) {
+        y[order[k]] = x[k];
+    }
+}
+
+// defect = S (b - A x) for x = S guess; returns |b - A x|.
+static double find_defect(ruga_ldl* f) {
+    double sum = 0;
+    ruga_sparse_multiply_symmetric(&f->matrix, f->guess, f->defect);
+    for (int i = 0; i < f->symbolic.n; i++) {
+        f->defect[i] = f->load[i] - f->defect[i];
+        double r = f->defect[i] / f->scale[i];
+        sum += r * r;
+    }
+    return sqrt(sum);
+}
+
+ruga_status ruga_ldl_solve(ruga_ldl* f, const double* b, double* x) {
+    enum { REFINEMENTS = 2 };
+    const double enough = 1e-12;
+    RUGA_ASSERT(f->ready);
+    int n = f->symbolic.n;
+    double size = cblas_dnrm2(n, b, 1);
+    for (int i = 0; i < n; i++) {
+        f->load[i] = b[i] * f->scale[i];
+    }
+    solve_scaled(f, false, f->load, f->guess);
+    double residual = find_defect(f);
+    for (int step = 0; step < REFINEMENTS && residual > enough * size; step++) {
+        solve_scaled(f, false, f->defect, f->defect);
+        cblas_daxpy(n, 1, f->defect, 1, f->guess, 1);
+        double better = find_defect(f);
+        if (!(better < residual)) { // no more to gain in this precision: take the step back
+            for (int k = 0; k < n; k++) {
+                f->guess[f->symbolic.order[k]] -= f->answer[k];
+            }
+            break;
+        }
+        residual = better;
+    }
+    for (int i = 0; i < n; i++) {
+        x[i] = f->guess[i] * f->scale[i];
+    }
+    return RUGA_OK;
+}
+
+ruga_status ruga_ldl_solve_absolute(ruga_ldl* f, const double* b, double* x) {
+    RUGA_ASSERT(f->ready);
+    for (int i = 0; i < f->symbolic.n; i++) {
+        f->load[i] = b[i] * f->scale[i];
+    }
+    solve_scaled(f, true, f->load, f->guess);
+    for (int i = 0; i < f->symbolic.n; i++) {
+        x[i] = f->guess[i] * f->scale[i];
+    }
+    return RUGA_OK;
+}

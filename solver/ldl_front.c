@@ -205,7 +205,8 @@ static void multiply_pivots(const ruga_front* f, int begin, int end, int first, 
             w += count;
             continue;
         }
-        const double *m = at(f, begin, p + 1), c = f->pivot[2 * p + 2];
+        const double* m = at(f, begin, p + 1);
+        double c = f->pivot[2 * p + 2];
         for (int i = 0; i < count; i++) {
             w[i] = d * l[i] + e * m[i];
             w[count + i] = e * l[i] + c * m[i];
@@ -229,13 +230,9 @@ static void update_columns(ruga_front* f, int begin, int end, int first) {
 
 // Moves the columns [eliminated, failed) to the end of [eliminated, end). Returns their new beginning.
 static int put_aside(ruga_front* f, int failed, int end) {
-    int count = failed - f->eliminated;
-    for (int k = 0; k < count && failed + k < end; k++) {
-        int target = end - 1 - k;
-        if (target <= failed - 1 - k) {
-            break;
-        }
-        exchange(f, failed - 1 - k, target);
+    int count = failed - f->eliminated, moved = end - failed < count ? end - failed : count;
+    for (int k = 0; k < moved; k++) {
+        exchange(f, f->eliminated + k, end - 1 - k);
     }
     return end - count;
 }
