@@ -10,10 +10,6 @@
 #include "lattice/lattice.h"
 #include "tests/check.h"
 
-static inline double box_signed_random(ruga_random* random) {
-    return 2 * ruga_random_uniform(random) - 1;
-}
-
 static inline void box_fill_element(ruga_lattice* lattice, int e) {
     static const double gauss[3] = {5. / 18, 8. / 18, 5. / 18};
     int n = lattice->degree + 1, npe = lattice->nodes_per_element;
@@ -76,7 +72,7 @@ static inline void box_deform(const ruga_lattice* lattice, const double f[9], do
     ruga_random random = {11};
     for (int a = 0; a < lattice->node_count; a++) {
         for (int i = 0; i < 3; i++) {
-            q[3 * a + i] = lattice->origin[i] + noise * box_signed_random(&random);
+            q[3 * a + i] = lattice->origin[i] + noise * (2 * ruga_random_uniform(&random) - 1);
             for (int j = 0; j < 3; j++) {
                 q[3 * a + i] += f[3 * i + j] * (lattice->rest[3 * a + j] - lattice->origin[j]);
             }
