@@ -476,6 +476,116 @@ static void weld_merges_within_tolerance_only(void** state) {
     ruga_mesh_clear(&mesh);
 }
 
+// ------------------------------------------------------------------------------------- subdivision
+
+static void subdivision_keeps_affine_maps_and_topology(void** state) {
+    (void)state;
+    ruga_mesh mesh;
+    make(RUGA_SHAPE_PILLOW, 0.5, 0, 0, 0.06, RUGA_PATTERN_EQUILATERAL, &mesh);
+    for (int steps = 0; steps <= 3; steps++) {
+        ruga_subdivision* s;
+        assert_ok(ruga_subdivision_create(&mesh, steps, &s));
+        const ruga_mesh* fine = ruga_subdivision_mesh(s);
+        assert_int_equal(fine->triangle_count, mesh.triangle_count << (2 * steps));
+        assert_closed(fine);
+        double *moved = NULL, *result = NULL;
+        assert_ok(RUGA_NEW(moved, 3 * mesh.vertex_count));
+        assert_ok(RUGA_NEW(result, 3 * fine->vertex_count));
+        const double a[9] = {1.2, 0.3, -0.4, 0.5, 0.6, 0.7, 0.1, -0.8, 0.9}, offset[3] = {1, 2, 3};
+        for (int v = 0; v < mesh.vertex_count; v++) {
+            ruga_multiply3(a, mesh.position + 3 * v, moved + 3 * v);
+            ruga_add_scaled(1, offset, moved + 3 * v);
+        }
+        ruga_subdivision_apply(s, moved, result);
+        for (int v = 0; v < fine->vertex_count; v++) {
+            double wanted[3];
+            ruga_multiply3(a, fine->position + 3 * v, wanted);
+            ruga_add_scaled(1, offset, wanted);
+            assert_near(ruga_distance(wanted, result + 3 * v), 0, 1e-14);
+        }
+        ruga_release(moved);
+        ruga_release(result);
+        ruga_subdivision_destroy(&s);
+    }
+    ruga_mesh_clear(&mesh);
+}
+
+static void subdivision_of_regular_vertex_and_border_by_hand(void** state) {
+    (void)state;
+    // Two triangles: edge 0-1 inner, vertices 2 and 3 opposite; everything else is border.
+    const double position[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, -1, 8}};
+    const int triangle[2][3] = {{0, 1, 2}, {1, 0, 3}};
+    const ruga_mesh_def def = {
+        .vertex_count = 4, .positions = position[0], .triangle_count = 2, .triangles = triangle[0]};
+    ruga_mesh mesh;
+    assert_ok(ruga_mesh_from_def(&def, &mesh));
+    ruga_subdivision* s;
+    assert_ok(ruga_subdivision_create(&mesh, 1, &s));
+    const ruga_mesh* fine = ruga_subdivision_mesh(s);
+    assert_int_equal(fine->vertex_count, 9);
+    assert_near(fine->position[2], 1, 1e-15);         // 3/4 v0 + 1/8 (v2 + v3): z = 8 / 8
+    assert_near(fine->position[3 * 4 + 2], 1, 1e-15); // inner edge: 3/8 (v0 + v1) + 1/8 (v2 + v3)
+    assert_near(fine->position[3 * 4 + 0], 0.5, 1e-15);
+    assert_near(fine->position[3 * 6 + 2], 4, 1e-15); // border edge 0-3
+    assert_int_equal(fine->source_vertex[3], 3);
+    assert_int_equal(fine->source_vertex[4], -1);
+    ruga_subdivision_destroy(&s);
+    ruga_mesh_clear(&mesh);
+}
+
+static void subdivision_smooths_an_icosahedron_to_its_limit(void** state) {
+    (void)state;
+    ruga_mesh mesh;
+    make(RUGA_SHAPE_SPHERE, 2, 0, 0, 1, RUGA_PATTERN_EQUILATERAL, &mesh);
+    assert_int_equal(mesh.vertex_count, 12);
+    ruga_subdivision* s;
+    assert_ok(ruga_subdivision_create(&mesh, 4, &s));
+    const ruga_mesh* fine = ruga_subdivision_mesh(s);
+    // Limit of a vertex: (1 - n l) v + l sum v_i, l = 1 / (3 / (8 b) + n); here sum v_i = sqrt(5) v.
+    double root = 3.0 / 8 + cos(2 * RUGA_PI / 5) / 4, b = (5.0 / 8 - root * root) / 5;
+    double limit = 1 / (3 / (8 * b) + 5);
+    assert_near(ruga_norm(fine->position), 1 - 5 * limit + limit * sqrt(5.0), 0.01);
+    ruga_subdivision_destroy(&s);
+    ruga_mesh_clear(&mesh);
+}
+
+static void subdivision_keeps_uv_seams_and_groups(void** state) {
+    (void)state;
+    ruga_mesh mesh;
+    // A quad whose halves share the edge 0-1, the first with uvs of its own, the second with none at one
+    // corner.
+    const double position[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, -1, 0}};
+    const int triangle[2][3] = {{0, 1, 2}, {1, 0, 3}}, uv_triangle[2][3] = {{0, 1, 2}, {3, 4, -1}};
+    const double uv[5][2] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0.5}, {0.25, 0.5}};
+    const ruga_mesh_def def = {.vertex_count = 4,
+                               .positions = position[0],
+                               .triangle_count = 2,
+                               .triangles = triangle[0],
+                               .uv_count = 5,
+                               .uv = uv[0],
+                               .uv_triangles = uv_triangle[0],
+                               .group_count = 2,
+                               .group_names = bow_names,
+                               .face_group = bow_group};
+    assert_ok(ruga_mesh_from_def(&def, &mesh));
+    ruga_subdivision* s;
+    assert_ok(ruga_subdivision_create(&mesh, 1, &s));
+    const ruga_mesh* fine = ruga_subdivision_mesh(s);
+    assert_int_equal(fine->uv_count, 5 + 3 + 1);
+    const int* middle = fine->uv_triangle + 3 * 3; // of the first face
+    assert_true(fine->uv[2 * middle[0]] == 0.5 && fine->uv[2 * middle[0] + 1] == 0);
+    const int* other = fine->uv_triangle + 3 * 7;
+    assert_true(fine->uv[2 * other[0]] == 0.375);
+    assert_int_equal(other[1], -1);
+    assert_int_equal(fine->face_group[3], 0);
+    assert_int_equal(fine->face_group[4], 1);
+    assert_string_equal(fine->group_name[1], "b");
+    ruga_subdivision_destroy(&s);
+    assert_status(ruga_subdivision_create(&mesh, -1, &s), RUGA_BAD_INPUT);
+    assert_status(ruga_subdivision_create(&mesh, 15, &s), RUGA_BAD_INPUT);
+    ruga_mesh_clear(&mesh);
+}
+
 // ------------------------------------------------------------------------------ failing allocations
 
 static int allocations_left;
@@ -538,10 +648,24 @@ done:
     return status;
 }
 
+static ruga_status subdivide_bow(void) {
+    ruga_mesh mesh = {0};
+    ruga_subdivision* s = NULL;
+    ruga_mesh_def def = bow_def();
+    ruga_status status = RUGA_OK;
+    RUGA_TRY_DONE(ruga_mesh_from_def(&def, &mesh));
+    RUGA_TRY_DONE(ruga_subdivision_create(&mesh, 2, &s));
+done:
+    ruga_mesh_clear(&mesh);
+    ruga_subdivision_destroy(&s);
+    return status;
+}
+
 static void every_failed_allocation_is_a_status(void** state) {
     (void)state;
     call_until_success(make_all_shapes);
     call_until_success(connect_and_extract);
+    call_until_success(subdivide_bow);
 }
 
 int main(void) {
@@ -563,6 +687,10 @@ int main(void) {
         cmocka_unit_test(hash_sees_positions_and_faces),
         cmocka_unit_test(areas_and_normals_of_a_sphere),
         cmocka_unit_test(weld_merges_within_tolerance_only),
+        cmocka_unit_test(subdivision_keeps_affine_maps_and_topology),
+        cmocka_unit_test(subdivision_of_regular_vertex_and_border_by_hand),
+        cmocka_unit_test(subdivision_smooths_an_icosahedron_to_its_limit),
+        cmocka_unit_test(subdivision_keeps_uv_seams_and_groups),
         cmocka_unit_test(every_failed_allocation_is_a_status),
     };
     return cmocka_run_group_tests_name("mesh", tests, NULL, check_no_leak);
