@@ -33,10 +33,11 @@ typedef struct ruga_shell_energies {
 } ruga_shell_energies;
 
 // Energy at x [V][3]; gradient [V][3] (= minus force) and hessian (values of the pattern) are SET where not
-// NULL; energies may be NULL. Allocates nothing: it works in scratch of the shell, so that one shell serves one
-// thread at a time. The same bits for any number of threads. clamp in [0, 1]: 0 = the exact Hessian; otherwise the geometric stiffness of compressive principal
-// membrane stress is multiplied by (1 - clamp), and a hinge's Hessian is clamp * Gauss-Newton + (1 - clamp) * exact.
-// With clamp = 1 the Hessian is positive semi-definite. Finite also where triangles have collapsed.
+// NULL; energies may be NULL. clamp in [0, 1]: 0 = the exact Hessian; otherwise the geometric stiffness of
+// compressive principal membrane stress is multiplied by (1 - clamp), and a hinge's Hessian is
+// clamp * Gauss-Newton + (1 - clamp) * exact. With clamp = 1 the Hessian is positive semi-definite.
+// Finite also where triangles have collapsed. The same bits for any number of threads. Allocates nothing: it
+// works in scratch of the shell, so that one shell serves one thread at a time.
 ruga_status ruga_shell_energy(const ruga_shell* shell, const double* x, double clamp,
                               ruga_shell_energies* energies, double* gradient, double* hessian);
 
