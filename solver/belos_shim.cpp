@@ -36,7 +36,7 @@ class Vector {
         : n(n), own(static_cast<double*>(ruga_allocate_zero(static_cast<size_t>(n) * sizeof(double)))),
           data(own) {
         if (!own) {
-            throw std::bad_alloc();
+            throw ruga_status_thrown{ruga_fail(RUGA_NO_MEMORY, "out of memory in MINRES: %d unknowns", n)};
         }
     }
     Vector(int n, double* view) : n(n), own(nullptr), data(view) {}

@@ -10,14 +10,11 @@
 
 #include <cholmod.h>
 
-#include <math.h>
-#include <string.h>
-
 struct ruga_cholesky {
     cholmod_common common;
     bool started;
     int n;
-    int *start, *index; // pattern, CHOLMOD's lower triangle
+    const ruga_sparse* pattern;
     cholmod_factor* factor;
     cholmod_dense *y, *e; // workspace of solves
     bool ready;
@@ -34,8 +31,6 @@ void ruga_cholesky_destroy(ruga_cholesky** cholesky) {
         cholmod_free_dense(&f->e, &f->common);
         cholmod_finish(&f->common);
     }
-    ruga_release(f->start);
-    ruga_release(f->index);
     ruga_release(f);
     *cholesky = NULL;
 }
@@ -53,9 +48,9 @@ static ruga_status failure(const ruga_cholesky* f, const char* task) {
 static cholmod_sparse matrix_view(const ruga_cholesky* f, const double* values) {
     cholmod_sparse a = {0};
     a.nrow = a.ncol = (size_t)f->n;
-    a.nzmax = (size_t)f->start[f->n];
-    a.p = f->start;
-    a.i = f->index;
+    a.nzmax = (size_t)f->pattern->start[f->n];
+    a.p = f->pattern->start;
+    a.i = f->pattern->index;
     a.x = (void*)values;
     a.stype = -1;
     a.itype = CHOLMOD_INT;
@@ -104,16 +99,13 @@ static void start_cholmod(ruga_cholesky* f) {
 ruga_status ruga_cholesky_create(const ruga_sparse* lower, int node_count, const int* node_start,
                                  const bool* last, ruga_cholesky** cholesky) {
     ruga_status status = RUGA_OK;
-    int n = lower->columns, entries = lower->start[n], *order = NULL;
+    int n = lower->columns, *order = NULL;
     ruga_cholesky* f = NULL;
     *cholesky = NULL;
     RUGA_TRY(RUGA_NEW_ZERO(f, 1));
     f->n = n;
-    RUGA_TRY_DONE(RUGA_NEW(f->start, n + 1));
-    RUGA_TRY_DONE(RUGA_NEW(f->index, entries));
+    f->pattern = lower;
     RUGA_TRY_DONE(RUGA_NEW(order, n));
-    memcpy(f->start, lower->start, (size_t)(n + 1) * sizeof(int));
-    memcpy(f->index, lower->index, (size_t)entries * sizeof(int));
     RUGA_TRY_DONE(find_order(lower, node_count, node_start, last, order));
     start_cholmod(f);
     cholmod_sparse a = matrix_view(f, NULL);
@@ -135,13 +127,11 @@ ruga_status ruga_cholesky_numeric(ruga_cholesky* f, const double* values, ruga_f
     *info = (ruga_factor_info){0};
     f->ready = false;
     cholmod_sparse a = matrix_view(f, values);
-    int fine = cholmod_factorize(&a, f->factor, &f->common);
-    if (!fine || f->common.status < CHOLMOD_OK) {
+    int finished = cholmod_factorize(&a, f->factor, &f->common);
+    if (!finished || f->common.status < CHOLMOD_OK) {
         return failure(f, "factorisation");
     }
-    // Not L->minor alone: a NaN passes CHOLMOD's test and stays in the diagonal.
-    f->ready = f->factor->minor == (size_t)f->n && isfinite(cholmod_rcond(f->factor, &f->common)) &&
-               cholmod_rcond(f->factor, &f->common) > 0;
+    f->ready = f->factor->minor == (size_t)f->n; // the status says nothing of a matrix that is not definite
     info->success = f->ready;
     info->positive = f->ready ? f->n : (int)f->factor->minor;
     info->negative = f->ready ? 0 : 1;
@@ -168,5 +158,5 @@ ruga_status ruga_cholesky_solve(ruga_cholesky* f, const double* b, double* x) {
 }
 
 size_t ruga_cholesky_bytes(const ruga_cholesky* f) {
-    return sizeof *f + ((size_t)f->n + 1 + (size_t)f->start[f->n]) * sizeof(int) + f->common.memory_inuse;
+    return sizeof *f + f->common.memory_inuse;
 }

@@ -9,6 +9,7 @@
 
 typedef struct ruga_cholesky ruga_cholesky;
 
+// `lower` stays the caller's and must outlive the factor. The values given later must be finite.
 ruga_status ruga_cholesky_create(const ruga_sparse* lower, int node_count, const int* node_start,
                                  const bool* last, ruga_cholesky** cholesky);
 void ruga_cholesky_destroy(ruga_cholesky** cholesky);

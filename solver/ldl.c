@@ -41,11 +41,11 @@ typedef struct front_record {
 
 struct ruga_ldl {
     ruga_ldl_symbolic symbolic;
-    ruga_sparse matrix; // the pattern, with the values of S A S
-    bool* last;         // [n] unknowns of multiplier nodes
-    double* scale;      // [n] S
-    int* child;         // [count] first child of a supernode, -1 = none
-    int* sibling;       // [count]
+    ruga_sparse matrix;  // the caller's pattern, with our values: S A S
+    bool* last;          // [n] unknowns of multiplier nodes
+    double* scale;       // [n] S
+    int* child;          // [count] first child of a supernode, -1 = none
+    int* sibling;        // [count]
     front_record* front; // [count]
     task_memory* memory; // [task_count + 1], the last one for the top
     bool planned, ready;
@@ -69,7 +69,7 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
     }
     ruga_release(f->memory);
     ruga_ldl_symbolic_clear(&f->symbolic);
-    ruga_sparse_clear(&f->matrix);
+    ruga_release(f->matrix.value);
     ruga_release(f->last);
     ruga_release(f->scale);
     ruga_release(f->child);
@@ -82,17 +82,6 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
     ruga_release(f->gather);
     ruga_release(f);
     *ldl = NULL;
-}
-
-static ruga_status copy_pattern(const ruga_sparse* lower, ruga_sparse* copy) {
-    int n = lower->columns;
-    *copy = (ruga_sparse){.rows = n, .columns = n};
-    RUGA_TRY(RUGA_NEW(copy->start, n + 1));
-    RUGA_TRY(RUGA_NEW(copy->index, lower->start[n]));
-    RUGA_TRY(RUGA_NEW_ZERO(copy->value, lower->start[n]));
-    memcpy(copy->start, lower->start, (size_t)(n + 1) * sizeof(int));
-    memcpy(copy->index, lower->index, (size_t)lower->start[n] * sizeof(int));
-    return RUGA_OK;
 }
 
 static void mark_last(ruga_ldl* f, int node_count, const int* node_start, const bool* last) {
@@ -127,15 +116,17 @@ static void list_children(ruga_ldl* f) {
     }
 }
 
-ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start,
-                            const bool* last, ruga_ldl** ldl) {
+ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start, const bool* last,
+                            ruga_ldl** ldl) {
     ruga_status status = RUGA_OK;
     int n = lower->columns;
     ruga_ldl* f = NULL;
     *ldl = NULL;
     RUGA_TRY(RUGA_NEW_ZERO(f, 1));
     RUGA_TRY_DONE(ruga_ldl_analyse(lower, node_count, node_start, last, &f->symbolic));
-    RUGA_TRY_DONE(copy_pattern(lower, &f->matrix));
+    f->matrix = *lower;
+    f->matrix.value = NULL;
+    RUGA_TRY_DONE(RUGA_NEW(f->matrix.value, lower->start[n]));
     RUGA_TRY_DONE(RUGA_NEW(f->last, n));
     RUGA_TRY_DONE(RUGA_NEW(f->scale, n));
     RUGA_TRY_DONE(RUGA_NEW(f->child, f->symbolic.count));
@@ -159,7 +150,7 @@ done:
 size_t ruga_ldl_bytes(const ruga_ldl* f) {
     size_t n = (size_t)f->symbolic.n, entries = (size_t)f->matrix.start[n];
     size_t bytes = ruga_ldl_symbolic_bytes(&f->symbolic);
-    bytes += entries * (sizeof(double) + sizeof(int)) + n * (5 * sizeof(double) + sizeof(int) + sizeof(bool));
+    bytes += entries * sizeof(double) + n * (5 * sizeof(double) + sizeof(bool));
     bytes += (size_t)f->symbolic.count * (sizeof(front_record) + 2 * sizeof(int));
     bytes += (size_t)f->gather_capacity * sizeof(double);
     for (int t = 0; t <= f->symbolic.task_count; t++) {
@@ -222,18 +213,6 @@ static void scale_matrix(ruga_ldl* f, const double* values) {
     }
 }
 
-static ruga_status check_finite(const ruga_sparse* a, const double* values) {
-    for (int j = 0; j < a->columns; j++) {
-        for (int p = a->start[j]; p < a->start[j + 1]; p++) {
-            if (!isfinite(values[p])) {
-                return ruga_fail(RUGA_BAD_INPUT, "entry (%d, %d) of the system matrix is %g: the state before it is not valid",
-                                 a->index[p], j, values[p]);
-            }
-        }
-    }
-    return RUGA_OK;
-}
-
 // Room for `count` more elements; what grows, grows by half at least.
 static ruga_status make_room(void** memory, size_t* capacity, size_t count, size_t size) {
     if (count <= *capacity) {
@@ -242,7 +221,8 @@ static ruga_status make_room(void** memory, size_t* capacity, size_t count, size
     size_t wanted = count > *capacity + *capacity / 2 ? count : *capacity + *capacity / 2;
     void* grown = ruga_reallocate(*memory, wanted * size);
     if (!grown) {
-        return ruga_fail(RUGA_NO_MEMORY, "out of memory: the factor needs %zu MB more", (wanted * size) >> 20);
+        return ruga_fail(RUGA_NO_MEMORY, "out of memory: the factor needs %zu MB more",
+                         (wanted * size) >> 20);
     }
     *memory = grown;
     *capacity = wanted;
@@ -289,8 +269,8 @@ static ruga_status reserve_front(assembly* a) {
     RUGA_TRY(make_room((void**)&m->stack, &m->stack_capacity, m->stack_used + update, sizeof(double)));
     size_t tiles = s->top[a->s] ? (size_t)ruga_chunk_count(a->below, RUGA_FRONT_TILE) : 1;
     tiles = tiles ? tiles : 1;
-    RUGA_TRY(make_room((void**)&m->work, &m->work_capacity, (tiles * RUGA_FRONT_TILE + 3) * full,
-                       sizeof(double)));
+    RUGA_TRY(
+        make_room((void**)&m->work, &m->work_capacity, (tiles * RUGA_FRONT_TILE + 3) * full, sizeof(double)));
     a->update = m->stack + m->stack_used;
     a->front = (ruga_front){.rows = (int)rows, .full = (int)full};
     a->front.a = m->factor + m->factor_used;
@@ -424,8 +404,12 @@ static ruga_status store_front(assembly* a) {
     }
     double* inverse = m->factor + m->factor_used + done * rows;
     memcpy(inverse, f->pivot, 2 * done * sizeof(double));
-    *record = (front_record){.factor = m->factor_used, .index = m->index_used, .update = a->base,
-                             .task = record->task, .rows = f->rows, .full = f->full,
+    *record = (front_record){.factor = m->factor_used,
+                             .index = m->index_used,
+                             .update = a->base,
+                             .task = record->task,
+                             .rows = f->rows,
+                             .full = f->full,
                              .eliminated = f->eliminated};
     m->factor_used += done * (rows + 2);
     m->index_used += rows;
@@ -554,7 +538,6 @@ static ruga_status finish(ruga_ldl* f, ruga_factor_info* info) {
 
 ruga_status ruga_ldl_numeric(ruga_ldl* f, const double* values, ruga_factor_info* info) {
     f->ready = false;
-    RUGA_TRY(check_finite(&f->matrix, values));
     scale_matrix(f, values);
     if (!f->planned) {
         start_tasks(f);
@@ -588,7 +571,8 @@ static void solve_forward(ruga_ldl* f, double* x) {
         }
         cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasUnit, done, l, r->rows, pivots, 1);
         if (below > 0) {
-            cblas_dgemv(CblasColMajor, CblasNoTrans, below, done, 1, l + done, r->rows, pivots, 1, 0, rest, 1);
+            cblas_dgemv(CblasColMajor, CblasNoTrans, below, done, 1, l + done, r->rows, pivots, 1, 0, rest,
+                        1);
         }
         for (int i = 0; i < done; i++) {
             x[index[i]] = pivots[i];
@@ -671,40 +655,51 @@ static void solve_scaled(ruga_ldl* f, bool absolute, const double* b, double* y)
     }
 }
 
-// defect = S (b - A x) for x = S guess; returns |b - A x|.
-static double find_defect(ruga_ldl* f) {
+// defect = S (b - A x) for x = S guess; returns |b - A x|. *backward: the defect relative to what round-off
+// in S x and S b explains.
+static double find_defect(ruga_ldl* f, double* backward) {
+    int n = f->symbolic.n;
     double sum = 0;
     ruga_sparse_multiply_symmetric(&f->matrix, f->guess, f->defect);
-    for (int i = 0; i < f->symbolic.n; i++) {
+    for (int i = 0; i < n; i++) {
         f->defect[i] = f->load[i] - f->defect[i];
         double r = f->defect[i] / f->scale[i];
         sum += r * r;
     }
+    *backward = cblas_dnrm2(n, f->defect, 1) / (cblas_dnrm2(n, f->guess, 1) + cblas_dnrm2(n, f->load, 1));
     return sqrt(sum);
+}
+
+// One step of iterative refinement, taken back where it does not help. True where another may.
+static bool refine(ruga_ldl* f, double* residual, double* backward) {
+    int n = f->symbolic.n;
+    solve_scaled(f, false, f->defect, f->defect);
+    cblas_daxpy(n, 1, f->defect, 1, f->guess, 1);
+    double before = *residual;
+    *residual = find_defect(f, backward);
+    if (!(*residual < before)) {
+        for (int k = 0; k < n; k++) {
+            f->guess[f->symbolic.order[k]] -= f->answer[k];
+        }
+    }
+    return *residual < 0.5 * before;
 }
 
 ruga_status ruga_ldl_solve(ruga_ldl* f, const double* b, double* x) {
     enum { REFINEMENTS = 2 };
-    const double enough = 1e-12;
+    const double enough = 1e-12, round_off = 4e-15;
     RUGA_ASSERT(f->ready);
     int n = f->symbolic.n;
-    double size = cblas_dnrm2(n, b, 1);
+    double size = cblas_dnrm2(n, b, 1), backward;
     for (int i = 0; i < n; i++) {
         f->load[i] = b[i] * f->scale[i];
     }
     solve_scaled(f, false, f->load, f->guess);
-    double residual = find_defect(f);
-    for (int step = 0; step < REFINEMENTS && residual > enough * size; step++) {
-        solve_scaled(f, false, f->defect, f->defect);
-        cblas_daxpy(n, 1, f->defect, 1, f->guess, 1);
-        double better = find_defect(f);
-        if (!(better < residual)) { // no more to gain in this precision: take the step back
-            for (int k = 0; k < n; k++) {
-                f->guess[f->symbolic.order[k]] -= f->answer[k];
-            }
+    double residual = find_defect(f, &backward);
+    for (int step = 0; step < REFINEMENTS && residual > enough * size && backward > round_off; step++) {
+        if (!refine(f, &residual, &backward)) {
             break;
         }
-        residual = better;
     }
     for (int i = 0; i < n; i++) {
         x[i] = f->guess[i] * f->scale[i];

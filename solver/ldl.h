@@ -42,11 +42,11 @@ size_t ruga_ldl_symbolic_bytes(const ruga_ldl_symbolic* symbolic);
 enum { RUGA_FRONT_TILE = 96 };
 typedef struct ruga_front {
     int rows, full;
-    double* a;     // [full][rows] columns; the lower triangle counts
-    int* index;    // [rows] step of each row, permuted along with them
-    double* pivot; // [full][2] D: (d, 0), or (d11, d21), (d22, 0)
-    double* peak;  // [full] the largest size that the diagonal entry ever had: the measure of round-off
-    double* work;  // [RUGA_FRONT_TILE * full]
+    double* a;        // [full][rows] columns; the lower triangle counts
+    int* index;       // [rows] step of each row, permuted along with them
+    double* pivot;    // [full][2] D: (d, 0), or (d11, d21), (d22, 0)
+    double* peak;     // [full] the largest size that the diagonal entry ever had: the measure of round-off
+    double* work;     // [RUGA_FRONT_TILE * full]
     bool must_finish; // a root: no parent takes pivots that are not stable
     int eliminated, positive, negative, zero;
 } ruga_front;
@@ -59,8 +59,9 @@ void ruga_front_update(const ruga_front* front, int begin, int end, double* work
 
 typedef struct ruga_ldl ruga_ldl;
 
-ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start,
-                            const bool* last, ruga_ldl** ldl);
+// `lower` stays the caller's and must outlive the factor. The values given later must be finite.
+ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start, const bool* last,
+                            ruga_ldl** ldl);
 void ruga_ldl_destroy(ruga_ldl** ldl);
 ruga_status ruga_ldl_numeric(ruga_ldl* ldl, const double* values, ruga_factor_info* info);
 ruga_status ruga_ldl_solve(ruga_ldl* ldl, const double* b, double* x);
