@@ -22,16 +22,18 @@ typedef struct ruga_scene {
     void* storage; // private
 } ruga_scene;
 
-// `sets`: "key.path=value" strings of --set, applied before validation; a list index is a number: handles.0.press.
-// RUGA_BAD_INPUT: "scene.yaml:12: skin.thickness: -2 mm is not above 0; ..." with the nearest valid key for an
-// unknown one, the dimension expected for a wrong unit. RUGA_BAD_MESH where the doctor finds errors for this use.
+// `sets`: "key.path=value" strings of --set, applied before validation; a list index is a number:
+// handles.0.press. RUGA_BAD_INPUT: "scene.yaml:12: skin.thickness: -2 mm is not above 0; ..." with the
+// nearest valid key for an unknown one, the dimension expected for a wrong unit. RUGA_BAD_MESH where the
+// doctor finds errors for this use.
 ruga_status ruga_scene_read(const char* path, int set_count, const char* const* sets, ruga_scene* scene);
 ruga_status ruga_scene_read_text(const char* text, const char* name, const char* directory, int set_count,
                                  const char* const* sets, ruga_scene* scene);
 void ruga_scene_clear(ruga_scene* scene);
 
 // Every key with its value (in SI) and whether it was given or is the default, in the scene's order.
-typedef void ruga_scene_visit(const char* key, const char* value, const char* unit, bool given, void* context);
+typedef void ruga_scene_visit(const char* key, const char* value, const char* unit, bool given,
+                              void* context);
 void ruga_scene_each(const ruga_scene* scene, ruga_scene_visit* visit, void* context);
 
 // A quantity such as "0.4 mm", "40 MPa" or "5" in SI. dimension: "m", "Pa", "s", "kg/m^3", "rad", "1", ...

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// The steps from a tree of YAML to a scene. Each step leaves a sentence with file, line and key.
+#ifndef RUGA_IO_SCENE_READ_H
+#define RUGA_IO_SCENE_READ_H
+
+#include "io/scene.h"
+#include "io/scene_schema.h"
+#include "io/yaml.h"
+
+typedef struct ruga_scene_value {
+    const char *key, *value, *unit;
+    bool given;
+    struct ruga_scene_value* next;
+} ruga_scene_value;
+
+// What ruga_scene.storage points to.
+typedef struct ruga_scene_parts {
+    ruga_pool pool; // strings and arrays of the def
+    ruga_scene_source source;
+    ruga_scene_value *first_value, *last_value;
+    int warning_capacity;
+} ruga_scene_parts;
+
+// Every key by itself: kind, dimension, range, default. Fills def (without its mesh), source and values.
+ruga_status ruga_scene_read_keys(const ruga_yaml_node* root, ruga_scene_parts* parts, ruga_model_def* def);
+
+// What keys demand of one another; sets the kinds of handles and regions.
+ruga_status ruga_scene_check_keys(const ruga_yaml_node* root, ruga_scene_source* source, ruga_model_def* def);
+
+// Reads or makes the mesh, scales, takes groups, remeshes, asks the doctor; then regions against that mesh.
+ruga_status ruga_scene_load_mesh(const ruga_yaml_node* root, const char* directory, ruga_scene* scene);
+
+// Adds to scene->warning.
+ruga_status ruga_scene_warn(ruga_scene* scene, const char* format, ...) __attribute__((format(printf, 2, 3)));
+
+#endif

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// The table of keys, in the order in which `explain` and docs/scene.md show them.
+#include "io/scene_schema.h"
+
+#include <math.h>
+#include <stddef.h>
+
+// clang-format off
+#define REQUIRED RUGA_KEY_REQUIRED
+#define ANY         {-INFINITY, INFINITY, true, true}
+#define POSITIVE    {0, INFINITY, true, true}
+#define NOT_NEGATIVE {0, INFINITY, false, true}
+#define POISSON     {-1, 0.5, true, true}
+#define IN(type, field) (int)offsetof(type, field)
+#define MODEL(field)    IN(ruga_model_def, field)
+#define SOURCE(field)   IN(ruga_scene_source, field)
+#define HANDLE(field)   IN(ruga_handle_def, field)
+#define KEYFRAME(field) IN(ruga_keyframe_def, field)
+
+#define SECTION(path, fallback, meaning) {path, RUGA_KEY_SECTION, 0, -1, "", fallback, ANY, NULL, meaning}
+#define ENTRIES(path, fallback, meaning) {path, RUGA_KEY_ENTRIES, 0, -1, "", fallback, ANY, NULL, meaning}
+#define NUMBER(path, offset, dimension, fallback, range, meaning) \
+    {path, RUGA_KEY_NUMBERS, 1, offset, dimension, fallback, range, NULL, meaning}
+#define NUMBERS(path, count, offset, dimension, fallback, range, meaning) \
+    {path, RUGA_KEY_NUMBERS, count, offset, dimension, fallback, range, NULL, meaning}
+#define ROWS(path, count, offset, dimension, meaning) \
+    {path, RUGA_KEY_ROWS, count, offset, dimension, NULL, ANY, NULL, meaning}
+#define INTEGERS(path, count, offset, fallback, low, high, meaning) \
+    {path, RUGA_KEY_INTEGERS, count, offset, "", fallback, {low, high, false, false}, NULL, meaning}
+#define FLAG(path, offset, fallback, meaning) {path, RUGA_KEY_FLAG, 1, offset, "", fallback, ANY, NULL, meaning}
+#define CHOICE(path, offset, fallback, choices, meaning) \
+    {path, RUGA_KEY_CHOICE, 1, offset, "", fallback, ANY, choices, meaning}
+#define OTHER(path, kind, offset, dimension, fallback, meaning) \
+    {path, kind, 1, offset, dimension, fallback, ANY, NULL, meaning}
+// clang-format on
+
+const ruga_key ruga_keys[] = {
+    INTEGERS("ruga", 1, -1, "1", 1, 1, "Version of the scene format; there is only this one."),
+
+    SECTION("mesh", REQUIRED, "The surface: either `file` or `make`."),
+    OTHER("mesh.file", RUGA_KEY_TEXT, SOURCE(file), "", NULL,
+          "A surface file (.obj .ply .stl .off .gltf .glb), relative to the scene file's folder."),
+    SECTION("mesh.make", NULL, "A shape made on the spot, in metres, centred at the origin."),
+    CHOICE("mesh.make.shape", SOURCE(make.shape), "pillow", "sheet|slab|bar|pillow|sphere|skirt",
+           "What is made; sheet and skirt lie in z = 0 with normals +z, the others are closed."),
+    OTHER("mesh.make.size", RUGA_KEY_SIZE, SOURCE(make.size), "m", "0.5 m",
+          "Outer size. sheet: X, Y; slab, bar: X, Y, Z; pillow: X, Y, Z (missing Y = X, Z = 0.3 X); sphere: "
+          "diameter; skirt: inner radius, outer radius, angle."),
+    NUMBER("mesh.make.edge", SOURCE(make.edge), "m", "10 mm", POSITIVE,
+           "Length of an edge; the nearest that fits is taken. Not together with `cells`."),
+    INTEGERS("mesh.make.cells", 2, SOURCE(make.cells), "(by edge)", 1, 100000,
+             "Number of quads along X and Y, or around and across, in place of `edge`."),
+    CHOICE("mesh.make.pattern", SOURCE(make.pattern), "equilateral", "equilateral|diagonal|alternating",
+           "How the triangles lie."),
+    OTHER("mesh.unit", RUGA_KEY_UNIT, SOURCE(unit), "m", "m",
+          "The unit of length of the file's coordinates, such as mm or inch. A result above 100 m or below 1 "
+          "mm "
+          "gives a warning."),
+    NUMBER("mesh.scale", SOURCE(scale), "1", "1", POSITIVE, "A factor on all coordinates, beside `unit`."),
+    OTHER("mesh.groups", RUGA_KEY_TEXTS, SOURCE(groups), "", "(all)",
+          "Only the faces of these groups of the file are simulated."),
+    SECTION("mesh.remesh", "(none)", "Isotropic remeshing before the simulation."),
+    NUMBER("mesh.remesh.edge", SOURCE(remesh_edge), "m", REQUIRED, POSITIVE,
+           "Length of an edge of the new mesh."),
+
+    SECTION("skin", "{}", "The thin shell."),
+    CHOICE("skin.model", -1, "shell", "shell|!springs|!volume", "What the skin is made of."),
+    NUMBER("skin.thickness", MODEL(skin.thickness), "m", "2 mm", POSITIVE, "Thickness h."),
+    NUMBER("skin.young", MODEL(skin.young), "Pa", "40 MPa", POSITIVE, "Young's modulus."),
+    NUMBER("skin.poisson", MODEL(skin.poisson), "1", "0.3", POISSON, "Poisson's ratio."),
+    NUMBER("skin.density", MODEL(skin.density), "kg/m^3", "900 kg/m^3", NOT_NEGATIVE, "Density."),
+    CHOICE("skin.membrane", MODEL(skin.membrane), "baraff-witkin", "baraff-witkin|stvk",
+           "Stretching energy: Baraff-Witkin or St Venant-Kirchhoff; the same at small strain."),
+    NUMBERS("skin.growth", 2, MODEL(skin.growth), "1", "[1, 1]", POSITIVE,
+            "Rest lengths along and across the skin's first direction are multiplied by these."),
+    CHOICE(
+        "skin.motion", MODEL(skin.motion), "static", "static|damped|!dynamic",
+        "static: the skin is in equilibrium at each frame. damped: drawn towards the skin that the interior "
+        "carries along, over the time `relaxation`."),
+    NUMBER("skin.relaxation", MODEL(skin.relaxation), "s", "20 ms", POSITIVE,
+           "Relaxation time of damped motion."),
+
+    SECTION("interior", "{}", "The solid inside, or the word none for a free shell."),
+    NUMBER("interior.young", MODEL(interior.young), "Pa", "0.5 MPa", POSITIVE, "Young's modulus."),
+    NUMBER("interior.poisson", MODEL(interior.poisson), "1", "0.3", POISSON, "Poisson's ratio."),
+    NUMBER("interior.density", MODEL(interior.density), "kg/m^3", "60 kg/m^3", NOT_NEGATIVE,
+           "Density; above 0 where the motion is dynamic."),
+    NUMBER("interior.damping", MODEL(interior.damping), "1/s", "0 1/s", NOT_NEGATIVE,
+           "Rate of velocity-proportional damping."),
+    CHOICE(
+        "interior.motion", MODEL(interior.motion), "dynamic", "dynamic|quasistatic|prescribed",
+        "dynamic: implicit Euler. quasistatic: interior and skin in equilibrium together. prescribed: by the "
+        "keyframes of `prescribed`, which is also the default where those are given."),
+
+    SECTION("lattice", "{}", "The hexahedral elements of the interior."),
+    INTEGERS("lattice.cells", 1, MODEL(lattice.cells), "6", 1, 1000,
+             "Number of cells along the longest side."),
+    INTEGERS("lattice.degree", 1, MODEL(lattice.degree), "2", 1, 2,
+             "2: quadratic B-splines, continuous in slope. 1: trilinear."),
+    CHOICE(
+        "lattice.fill", MODEL(lattice.fill), "mesh", "mesh|box",
+        "mesh: what the closed surface encloses is material. box: the whole box of cells is; an open sheet "
+        "lies on its top face, at the side of its normals."),
+    NUMBER("lattice.depth", MODEL(lattice.depth), "m", "0 m", NOT_NEGATIVE,
+           "Depth of the box below an open sheet with `fill: box`; 0 = one cell."),
+
+    SECTION("coupling", "{}", "What ties skin and interior together."),
+    CHOICE(
+        "coupling.kind", MODEL(coupling.kind), "clusters", "clusters|spectral|none",
+        "Low-pass constraints by Gaussian clusters or by eigenvectors of the mesh's Laplacian. none without "
+        "`foundation`: the skin goes where the interior takes it."),
+    CHOICE(
+        "coupling.rule", MODEL(coupling.rule), "calibrated", "calibrated|paper",
+        "How cluster size follows from the wavelength: so that the predicted wavelength comes out, or by the "
+        "letter of the 2013 paper."),
+    FLAG("coupling.foundation", MODEL(coupling.foundation), "true",
+         "Whether the interior also resists what the lattice cannot represent."),
+    INTEGERS("coupling.count", 1, MODEL(coupling.count), "0", 0, 1000000,
+             "Number of clusters or of eigenvectors; 0 = by the rule."),
+    NUMBER(
+        "coupling.radius", MODEL(coupling.radius), "m", "0 m", NOT_NEGATIVE,
+        "Largest distance of a vertex to its cluster's centre; 0 = by the rule. Only together with `sigma`."),
+    NUMBER("coupling.sigma", MODEL(coupling.sigma), "m", "0 m", NOT_NEGATIVE,
+           "Width of the Gaussian; 0 = by the rule. Only together with `radius`."),
+
+    ENTRIES(
+        "prescribed", "(none)",
+        "Keyframes of the interior's motion, x -> matrix (x - c) + c + translate about the mesh's centre c, "
+        "then the bump; linear in between, held outside."),
+    NUMBER("prescribed.N.time", KEYFRAME(time), "s", "0 s", ANY,
+           "Time; each keyframe is later than the one before."),
+    {"prescribed.N.stretch", RUGA_KEY_STRETCH, 3, KEYFRAME(matrix), "1", "[1, 1, 1]", ANY, NULL,
+     "Stretch along x, y and z. Not together with `matrix`."},
+    ROWS("prescribed.N.matrix", 3, KEYFRAME(matrix), "1", "Three rows of any linear map."),
+    NUMBERS("prescribed.N.translate", 3, KEYFRAME(translate), "m", "[0, 0, 0]", ANY, "Displacement."),
+    SECTION("prescribed.N.bump", "(none)",
+            "A dent: depth exp(-r^2 / (2 radius^2)) along direction, r the distance to center."),
+    NUMBERS("prescribed.N.bump.center", 3, KEYFRAME(bump_center), "m", "[0, 0, 0]", ANY,
+            "Centre, on the rest shape."),
+    NUMBER("prescribed.N.bump.radius", KEYFRAME(bump_radius), "m", REQUIRED, POSITIVE, "Radius."),
+    NUMBER("prescribed.N.bump.depth", KEYFRAME(bump_depth), "m", REQUIRED, ANY, "Depth at the centre."),
+    NUMBERS("prescribed.N.bump.direction", 3, KEYFRAME(bump_direction), "1", "[0, 0, -1]", ANY,
+            "Direction, of any length but 0."),
+
+    SECTION("time", "{}", "Frame k is at k times the step."),
+    NUMBER("time.step", MODEL(step), "s", "20 ms", POSITIVE, "Time from frame to frame."),
+    INTEGERS("time.frames", 1, MODEL(frames), "50", 1, 1000000,
+             "Number of frames after frame 0, the start. The only key that may change for a resumed run."),
+    NUMBERS("gravity", 3, MODEL(gravity), "m/s^2", "[0, 0, 0]", ANY, "Acceleration on skin and interior."),
+
+    ENTRIES("handles", "(none)",
+            "What holds, moves and loads the object: each with a region and one of fix, move, press, force, "
+            "line_force."),
+    SECTION("handles.N.region", REQUIRED,
+            "A part of the rest shape, in metres after `unit` and `scale`: one of the keys below, or the "
+            "word all."),
+    ROWS("handles.N.region.box", 2, HANDLE(region.min), "m", "Two opposite corners, the smaller one first."),
+    SECTION("handles.N.region.sphere", NULL, "What lies within `radius` of `center`."),
+    NUMBERS("handles.N.region.sphere.center", 3, HANDLE(region.center), "m", "[0, 0, 0]", ANY, "Centre."),
+    NUMBER("handles.N.region.sphere.radius", HANDLE(region.radius), "m", REQUIRED, POSITIVE, "Radius."),
+    SECTION("handles.N.region.plane", NULL,
+            "What lies on the plane or on the side that its normal points to."),
+    NUMBERS("handles.N.region.plane.center", 3, HANDLE(region.center), "m", "[0, 0, 0]", ANY,
+            "A point of the plane."),
+    NUMBERS("handles.N.region.plane.normal", 3, HANDLE(region.normal), "1", REQUIRED, ANY,
+            "Normal, of any length but 0."),
+    OTHER("handles.N.region.group", RUGA_KEY_TEXT, HANDLE(region.group), "", NULL,
+          "The faces of a group of the mesh."),
+    OTHER("handles.N.region.vertices", RUGA_KEY_VERTICES, HANDLE(region), "", NULL,
+          "Vertices by their number in the file, from 0; for a made shape, of the mesh itself."),
+    OTHER("handles.N.region.all", RUGA_KEY_EVERY, -1, "", NULL, "true: everything."),
+    OTHER("handles.N.fix", RUGA_KEY_AXES, HANDLE(axes), "", NULL,
+          "The region keeps its rest position: true, or only along these of [x, y, z]."),
+    SECTION("handles.N.move", NULL, "The region is rotated, then translated."),
+    NUMBERS("handles.N.move.translate", 3, HANDLE(translate), "m", "[0, 0, 0]", ANY,
+            "Displacement at full ramp."),
+    SECTION("handles.N.move.rotate", "(none)", "Rotation at full ramp."),
+    NUMBERS("handles.N.move.rotate.axis", 3, HANDLE(rotate_axis), "1", "[0, 0, 1]", ANY,
+            "Axis, of any length but 0."),
+    NUMBER("handles.N.move.rotate.angle", HANDLE(rotate_angle), "rad", "0 deg", ANY, "Angle."),
+    NUMBERS("handles.N.move.rotate.center", 3, HANDLE(rotate_center), "m", "[0, 0, 0]", ANY,
+            "A point of the axis."),
+    OTHER("handles.N.move.axes", RUGA_KEY_AXES, HANDLE(axes), "", "[x, y, z]",
+          "Components that follow; the others stay free."),
+    NUMBER("handles.N.press", HANDLE(pressure), "Pa", NULL, ANY,
+           "Pressure along the inward normal of the deformed skin."),
+    NUMBERS("handles.N.force", 3, HANDLE(force), "N", NULL, ANY,
+            "Total force, spread over the region's area."),
+    NUMBERS("handles.N.line_force", 3, HANDLE(force), "N/m", NULL, ANY,
+            "Force per length along the region's boundary edges."),
+    NUMBERS("handles.N.during", 2, HANDLE(during), "s", "(from the start)", ANY,
+            "Grows linearly from the first time to the second, then stays."),
+    CHOICE("handles.N.hold", HANDLE(hold), "both", "both|interior|skin", "What fix and move hold."),
+
+    SECTION("solver", "{}", "How it is solved."),
+    CHOICE("solver.method", MODEL(solver.method), "default", "default|newton|quasi-newton|paper",
+           "The static solve; paper is the published method, for comparison."),
+    CHOICE("solver.linear", MODEL(solver.linear), "direct", "direct|minres",
+           "How Newton's linear systems are solved."),
+    {"solver.tolerance",
+     RUGA_KEY_NUMBERS,
+     1,
+     MODEL(solver.tolerance),
+     "1",
+     "1e-5",
+     {0, 0.1, true, false},
+     NULL,
+     "Norm of the projected gradient over that of the single nodal forces below which a state is converged."},
+    OTHER("solver.seed", RUGA_KEY_SEED, MODEL(solver.seed), "", "1", "Seed of all random numbers."),
+    FLAG("solver.allow_coarse", MODEL(solver.allow_coarse), "false",
+         "Whether to run with fewer than 3 edges per wavelength."),
+
+    OTHER("creases", RUGA_KEY_LATER, -1, "", NULL, "Creases."),
+};
+const int ruga_key_count = sizeof ruga_keys / sizeof ruga_keys[0];

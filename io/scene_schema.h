@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// Every key that a scene may have: where it stands, what it holds, its default, its range and its meaning.
+// The one table behind reading, refusing, `explain` and docs/scene.md.
+#ifndef RUGA_IO_SCENE_SCHEMA_H
+#define RUGA_IO_SCENE_SCHEMA_H
+
+#include "io/pool.h"
+#include "mesh/make.h"
+#include "ruga/types.h"
+
+typedef enum ruga_key_kind {
+    RUGA_KEY_SECTION,  // a map of further keys
+    RUGA_KEY_ENTRIES,  // a list of maps; their keys stand under path.N
+    RUGA_KEY_NUMBERS,  // `count` quantities, a list where more than one: double [count]
+    RUGA_KEY_ROWS,     // `count` rows of three quantities: double [count][3]
+    RUGA_KEY_STRETCH,  // three numbers: the diagonal of double [3][3]
+    RUGA_KEY_SIZE,     // one to three lengths of a made shape: double [3]
+    RUGA_KEY_INTEGERS, // `count` whole numbers: int [count]
+    RUGA_KEY_SEED,     // a whole number: int64_t
+    RUGA_KEY_FLAG,     // true or false: bool
+    RUGA_KEY_CHOICE,   // one of `choices`: an enum or int, its index
+    RUGA_KEY_TEXT,     // char*
+    RUGA_KEY_TEXTS,    // a list of texts: ruga_names
+    RUGA_KEY_UNIT,     // the name of a unit of length: double, m
+    RUGA_KEY_AXES,     // true, or a list of x, y, z: bool [3]
+    RUGA_KEY_VERTICES, // a list of vertex numbers: ruga_region
+    RUGA_KEY_EVERY,    // true and nothing else, where the key alone says it all
+    RUGA_KEY_LATER,    // belongs to a later version
+} ruga_key_kind;
+
+typedef struct ruga_range {
+    double low, high;
+    bool low_open, high_open; // whether the bound itself is excluded
+} ruga_range;
+
+typedef struct ruga_names {
+    int count;
+    char** text;
+} ruga_names;
+
+// The mesh section.
+typedef struct ruga_scene_source {
+    char* file;
+    ruga_make_def make;
+    double unit, scale;
+    ruga_names groups;
+    double remesh_edge; // m; 0 = none
+} ruga_scene_source;
+
+typedef struct ruga_key {
+    const char* path; // "skin.thickness", "handles.N.region.box"
+    ruga_key_kind kind;
+    int count;
+    int offset; // bytes in the ruga_scene_source, ruga_handle_def, ruga_keyframe_def or ruga_model_def; -1 =
+                // none
+    const char* dimension; // "" where it is no quantity
+    // In YAML. NULL: none, the key chooses or must be given. In parentheses: what its absence means, in
+    // words. A section with a default of {} is always there, with the defaults of its keys.
+    const char* fallback;
+    ruga_range range;
+    const char* choices; // "static|damped|!dynamic"; ! = not available yet
+    const char* meaning;
+} ruga_key;
+
+#define RUGA_KEY_REQUIRED "(must be given)"
+
+extern const ruga_key ruga_keys[];
+extern const int ruga_key_count;
+
+// Whether `key` stands directly in the section `parent` ("" = the scene itself).
+bool ruga_key_is_child(const ruga_key* key, const char* parent);
+const char* ruga_key_name(const ruga_key* key);
+// The key `name` of a section; NULL where there is none.
+const ruga_key* ruga_key_find(const char* parent, const char* name);
+// "thickness, young": the keys of a section.
+void ruga_key_list(const char* section, ruga_string* text);
+// Sentence for a key that does not exist: the nearest one, here or elsewhere.
+void ruga_key_suggest(const char* parent, const char* name, ruga_string* text);
+
+// Choice number `index` in `choices` into name [32]; false behind the last. *later: not available yet.
+bool ruga_choice(const char* choices, int index, char name[32], bool* later);
+// "static, damped"
+void ruga_choices_list(const char* choices, ruga_string* text);
+// The available choice that is nearest to a misspelt one; false where none is near.
+bool ruga_choice_nearest(const char* choices, const char* name, char nearest[32]);
+
+// "above 0 and at most 0.1"
+void ruga_range_text(const ruga_range* range, ruga_string* text);
+bool ruga_range_has(const ruga_range* range, double value);
+
+// docs/scene.md
+ruga_status ruga_scene_reference(ruga_string* text);
+
+#endif
