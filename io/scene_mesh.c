@@ -211,9 +211,17 @@ static ruga_status check_vertices(const ruga_yaml_node* node, const char* shown,
     return status;
 }
 
-// Whether some point of the mesh's bounding box is in the region: enough material for an interior to be in
-// it.
-static bool region_meets_box(const ruga_region* region, const double min[3], const double max[3]) {
+// Whether a region without any of the surface may still hold material of the interior: it has a volume, and
+// that meets the mesh's bounding box; a lattice that fills a box reaches further, how far only the lattice
+// knows.
+static bool region_may_hold_interior(const ruga_region* region, ruga_fill fill, const double min[3],
+                                     const double max[3]) {
+    if (region->kind == RUGA_REGION_GROUP || region->kind == RUGA_REGION_VERTICES) {
+        return false;
+    }
+    if (fill == RUGA_FILL_BOX) {
+        return true;
+    }
     double distance2 = 0, support = 0;
     for (int axis = 0; axis < 3; axis++) {
         if (region->kind == RUGA_REGION_BOX &&
@@ -241,8 +249,8 @@ static ruga_status check_selection(const ruga_yaml_node* node, const char* shown
                    (handle->kind != RUGA_HANDLE_FIX && handle->kind != RUGA_HANDLE_MOVE);
     double min[3], max[3];
     ruga_mesh_bounds(&scene->mesh, min, max);
-    bool anything = count > 0 || (!on_skin && (scene->def.lattice.fill == RUGA_FILL_BOX ||
-                                               region_meets_box(&handle->region, min, max)));
+    bool anything = count > 0 || (!on_skin && region_may_hold_interior(&handle->region,
+                                                                       scene->def.lattice.fill, min, max));
     return anything
                ? RUGA_OK
                : ruga_yaml_fail(node, shown,

@@ -434,6 +434,47 @@ static void vertices_are_those_of_the_file(void** state) {
                    "scene.yaml:3: handles.0.region: vertex 0 is not in the mesh");
 }
 
+static void regions_may_lie_inside_the_material(void** state) {
+    (void)state;
+    static const char inside[] = "{sphere: {radius: 4 cm}}";
+    char text[512];
+    ruga_scene scene;
+    (void)snprintf(text, sizeof text, "%shandles: [{region: %s, fix: true}]\n", MESH, inside);
+    assert_ok(read_string(text, &scene));
+    ruga_scene_clear(&scene);
+    // The skin is not there.
+    (void)snprintf(text, sizeof text, "%shandles: [{region: %s, fix: true, hold: skin}]\n", MESH, inside);
+    assert_refused(text, "handles.0.region: the region selects nothing");
+    (void)snprintf(text, sizeof text, "%shandles: [{region: %s, force: [1, 0, 0]}]\n", MESH, inside);
+    assert_refused(text, "handles.0.region: the region selects nothing");
+    (void)snprintf(text, sizeof text, "%sinterior: none\nhandles: [{region: %s, fix: true}]\n", MESH, inside);
+    assert_refused(text, "handles.0.region: the region selects nothing");
+    // Beside the mesh there is material only where the lattice fills a box.
+    static const char beside[] =
+        MESH "lattice: {fill: %s}\nhandles: [{region: {plane: {center: [0, 0, -0.5], "
+             "normal: [0, 0, -1]}}, fix: true}]\n";
+    (void)snprintf(text, sizeof text, beside, "box");
+    assert_ok(read_string(text, &scene));
+    ruga_scene_clear(&scene);
+    (void)snprintf(text, sizeof text, beside, "mesh");
+    assert_refused(text, "the region selects nothing; the mesh reaches from (-0.2, -0.15, -0.1)");
+}
+
+static void remeshing_comes_before_regions(void** state) {
+    (void)state;
+    ruga_scene coarse, fine;
+    assert_ok(read_string("mesh: {file: cube.obj}\nhandles: [{region: {group: top}, press: 1}]\n", &coarse));
+    assert_ok(read_string(
+        "mesh: {file: cube.obj, remesh: {edge: 20 cm}}\nhandles: [{region: {group: top}, press: 1}]\n",
+        &fine));
+    assert_true(fine.mesh.triangle_count > 10 * coarse.mesh.triangle_count);
+    assert_near(ruga_mesh_mean_edge(&fine.mesh), 0.2, 0.06);
+    assert_near(ruga_mesh_volume(&fine.mesh), 1, 1e-9);
+    assert_true(fine.mesh_hash != coarse.mesh_hash && fine.hash != coarse.hash);
+    ruga_scene_clear(&coarse);
+    ruga_scene_clear(&fine);
+}
+
 static void sets_are_applied_before_validation(void** state) {
     (void)state;
     static const char* const sets[] = {"skin.thickness=3 mm",   "gravity=[0, 0, -9.81]",
@@ -711,6 +752,8 @@ int main(void) {
         cmocka_unit_test(keys_reach_their_fields),
         cmocka_unit_test(files_are_scaled_and_odd_sizes_are_told),
         cmocka_unit_test(vertices_are_those_of_the_file),
+        cmocka_unit_test(regions_may_lie_inside_the_material),
+        cmocka_unit_test(remeshing_comes_before_regions),
         cmocka_unit_test(sets_are_applied_before_validation),
         cmocka_unit_test(hash_is_of_what_a_scene_says),
         cmocka_unit_test(each_shows_every_key_with_its_value),
