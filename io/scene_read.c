@@ -425,7 +425,8 @@ static ruga_status read_leaf(reader* r, const place* p, bool given) {
         status = ruga_string_status(&value);
     }
     if (status == RUGA_OK) {
-        status = record(r, p->shown, value.data, p->key->dimension, given);
+        bool angle = p->key->kind == RUGA_KEY_SIZE && r->parts->source.make.shape == RUGA_SHAPE_SKIRT;
+        status = record(r, p->shown, value.data, angle ? "m, m, rad" : p->key->dimension, given);
     }
     ruga_string_clear(&value);
     return status;
@@ -547,7 +548,10 @@ static const char* word_of_section(const ruga_key* key) {
 static ruga_status read_subsection(reader* r, const place* p) {
     const char* word = word_of_section(p->key);
     if (p->node->kind == RUGA_YAML_SCALAR && word && strcmp(p->node->text, word) == 0) {
-        return record(r, p->shown, word, "", true);
+        char all[PATH_LENGTH]; // region: all is short for region: {all: true}
+        (void)snprintf(all, sizeof all, "%.100s.all", p->shown);
+        return strcmp(word, "all") == 0 ? record(r, all, "true", "", true)
+                                        : record(r, p->shown, word, "", true);
     }
     if (p->node->kind != RUGA_YAML_MAP) {
         char needed[64];

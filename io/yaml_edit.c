@@ -154,7 +154,7 @@ ruga_status ruga_yaml_write(const ruga_yaml_node* root, ruga_string* text) {
     }
     yaml_emitter_set_output(&emitter, collect, text);
     yaml_emitter_set_unicode(&emitter, 1);
-    yaml_emitter_set_width(&emitter, 110);
+    yaml_emitter_set_width(&emitter, -1); // lines as long as they are: folded ones are hard to read
     yaml_event_t event;
     bool ok = yaml_stream_start_event_initialize(&event, YAML_UTF8_ENCODING) &&
               yaml_emitter_emit(&emitter, &event) &&

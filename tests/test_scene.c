@@ -544,6 +544,8 @@ static void hash_is_of_what_a_scene_says(void** state) {
                 hash_of(MESH "skin: {thickness: 1 mm, young: 1 MPa}\nhandles: [{region: all, press: 1}]\n"));
     uint64_t fixed = hash_of(MESH "handles: [{region: all, fix: [x]}]\n");
     assert_true(fixed != hash_of(MESH "handles: [{region: all, fix: [y]}]\n"));
+    assert_true(hash_of(MESH "handles: [{region: all, fix: true}]\n") ==
+                hash_of(MESH "handles: [{region: {all: true}, fix: [z, y, x]}]\n"));
     assert_true(fixed == hash_of(MESH "handles: [{fix: [x], region: all, hold: both}]\n"));
 }
 
