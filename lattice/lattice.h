@@ -29,6 +29,8 @@ typedef struct ruga_lattice {
     int vertex_count;
     int* vertex_element;  // [V]
     double* vertex_weight; // [V][nodes_per_element], sums to one
+    int* gather_start;     // [N + 1] of each node, where the list of its vertices starts
+    int* gather;           // [V nodes_per_element] places in vertex_weight, ascending for each node
 } ruga_lattice;
 
 // Builds the lattice of a watertight mesh (fill mesh) or of its box (fill box; the mesh may be open).
