@@ -184,7 +184,8 @@ static double power_below(double x) {
 }
 
 // Rows and columns to largest entries near 1: first those of K by themselves (Ruiz 2001), then those of the
-// multipliers, so that H weighs as much as K whatever its unit.
+// multipliers, so that H weighs about as much as K whatever its unit. A tenth of K rather than the same:
+// then hardly any pivot of a soft K is refused for the size of its H (measured on sheets with clusters).
 static void scale_matrix(ruga_ldl* f, const double* values) {
     int n = f->symbolic.n;
     double *scale = f->scale, *max = f->defect;
@@ -203,7 +204,7 @@ static void scale_matrix(ruga_ldl* f, const double* values) {
     row_maxima(&f->matrix, values, scale, max);
     for (int i = 0; i < n; i++) {
         if (f->last[i] && max[i] > 0) {
-            scale[i] = power_below(1 / max[i]);
+            scale[i] = power_below(0.1 / max[i]);
         }
     }
     for (int j = 0; j < n; j++) {
@@ -213,12 +214,12 @@ static void scale_matrix(ruga_ldl* f, const double* values) {
     }
 }
 
-// Room for `count` more elements; what grows, grows by half at least.
+// Room for `count` elements; what grows, grows by an eighth at least.
 static ruga_status make_room(void** memory, size_t* capacity, size_t count, size_t size) {
-    if (count <= *capacity) {
+    if (*memory && count <= *capacity) {
         return RUGA_OK;
     }
-    size_t wanted = count > *capacity + *capacity / 2 ? count : *capacity + *capacity / 2;
+    size_t wanted = count > *capacity + *capacity / 8 ? count : *capacity + *capacity / 8;
     void* grown = ruga_reallocate(*memory, wanted * size);
     if (!grown) {
         return ruga_fail(RUGA_NO_MEMORY, "out of memory: the factor needs %zu MB more",
