@@ -13,7 +13,7 @@
 //    been held helps its neighbours, which share most of its nodes.
 // 2. What is left are elements that the region holds in part (its rim, or a surface alone). There, rows of
 //    points are kept: in each element by pivoting, at most as many as it has free nodes; over all elements by
-//    a rank-revealing sparse QR.
+//    a rank-revealing QR.
 //
 // Independent means: at least 1e-3 of the row (whose entries sum to one) is orthogonal to those kept before.
 // A node with less influence than that on the held material is left to the elasticity instead of being flung
@@ -221,7 +221,7 @@ static int pick_points(builder* b, int handle, int element, int count, const int
             *out++ = weight[local[k]];
         }
     }
-    int rank = ruga_independent_dense(rows, count, b->dense, INDEPENDENCE, picked);
+    int rank = ruga_independent_pick(rows, count, b->dense, INDEPENDENCE, picked);
     for (int k = 0; k < rank; k++) {
         picked[k] = b->dense_point[picked[k]];
     }
@@ -283,28 +283,29 @@ static ruga_status add_candidates(builder* b, int handle) {
     return RUGA_OK;
 }
 
-// Entries of the rows of points on free nodes, as ruga_independent_sparse takes them.
+// Entries of the rows of points on free nodes, as ruga_independent_rows takes them.
 typedef struct sparse_rows {
     int count;
-    int* row; // [count] of builder.row
-    int64_t* start;
-    int64_t* column;
+    int* row;  // [count] of builder.row
+    int fixed; // the first ones, of earlier handles
+    int* start;
+    int* column;
     double* value;
     bool* kept;
 } sparse_rows;
 
-static ruga_status gather_rows(const builder* b, sparse_rows* s) {
+static ruga_status gather_rows(const builder* b, int first, sparse_rows* s) {
     size_t n = (size_t)b->lattice->nodes_per_element;
     for (int i = 0; i < b->row_count; i++) {
         s->count += b->row[i].element >= 0;
+        s->fixed += b->row[i].element >= 0 && i < first;
     }
     RUGA_TRY(RUGA_NEW(s->row, s->count));
     RUGA_TRY(RUGA_NEW(s->start, s->count + 1));
     RUGA_TRY(RUGA_NEW(s->column, (size_t)s->count * n));
     RUGA_TRY(RUGA_NEW(s->value, (size_t)s->count * n));
     RUGA_TRY(RUGA_NEW_ZERO(s->kept, s->count));
-    int64_t out = 0;
-    int count = 0;
+    int out = 0, count = 0;
     for (int i = 0; i < b->row_count; i++) {
         if (b->row[i].element < 0) {
             continue;
@@ -327,9 +328,9 @@ static ruga_status gather_rows(const builder* b, sparse_rows* s) {
 static ruga_status drop_dependent(builder* b, int first) {
     ruga_status status = RUGA_OK;
     sparse_rows s = {0};
-    RUGA_TRY_DONE(gather_rows(b, &s));
-    RUGA_TRY_DONE(ruga_independent_sparse(s.count, b->lattice->node_count, s.start, s.column, s.value,
-                                          INDEPENDENCE, s.kept));
+    RUGA_TRY_DONE(gather_rows(b, first, &s));
+    RUGA_TRY_DONE(ruga_independent_rows(s.count, b->lattice->node_count, s.fixed, s.start, s.column, s.value,
+                                        INDEPENDENCE, s.kept));
     int out = first;
     for (int i = 0; i < s.count; i++) {
         if (s.row[i] >= first && s.kept[i]) {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// Dense: modified Gram-Schmidt with pivoting. Sparse: multifrontal Householder QR (SuiteSparseQR) of the
-// transpose in the order given; it declares a column dead when what is left of it is below the tolerance, and
-// a dead column opens no new row of R.
+// A few rows: modified Gram-Schmidt with pivoting. Many: Householder QR with column pivoting of the transpose
+// (LAPACK's dgeqp3, which takes given columns first), for each set of rows that shares columns. Pivoting
+// matters: deciding row after row in a fixed order, as a sparse QR does, chose sets whose last pivot in a
+// better order was 1e-8.
 #include "constraints/independent.h"
 
 #include "core/memory.h"
 
-#include <SuiteSparseQR_C.h>
 #include <cblas.h>
+#include <lapacke.h>
 
 #include <math.h>
 #include <string.h>
@@ -22,7 +23,7 @@ static double square(int width, const double* row) {
     return sum;
 }
 
-int ruga_independent_dense(int count, int width, double* a, double tolerance, int* picked) {
+int ruga_independent_pick(int count, int width, double* a, double tolerance, int* picked) {
     int rank = 0;
     while (rank < count && rank < width) {
         int longest = -1;
@@ -38,77 +39,140 @@ int ruga_independent_dense(int count, int width, double* a, double tolerance, in
             break;
         }
         picked[rank++] = longest;
-        // Each remainder loses its part along the picked one, which thereby itself becomes zero.
-        const double* pivot = a + (size_t)longest * (size_t)width;
+        double* pivot = a + (size_t)longest * (size_t)width;
         for (int i = 0; i < count; i++) {
-            double* row = a + (size_t)i * (size_t)width;
-            if (i != longest) {
-                double part = 0;
-                for (int c = 0; c < width; c++) {
-                    part += pivot[c] * row[c];
-                }
-                part /= most;
-                for (int c = 0; c < width; c++) {
-                    row[c] -= part * pivot[c];
-                }
+            double *row = a + (size_t)i * (size_t)width, part = 0;
+            for (int c = 0; c < width; c++) {
+                part += pivot[c] * row[c];
+            }
+            for (int c = 0; c < width && i != longest; c++) {
+                row[c] -= part / most * pivot[c];
             }
         }
-        memset(a + (size_t)longest * (size_t)width, 0, (size_t)width * sizeof *a);
+        memset(pivot, 0, (size_t)width * sizeof *pivot);
     }
     return rank;
 }
 
-// Column j of R is live where it reaches a row that no column before it reached.
-static void read_live(const cholmod_sparse* r, const SuiteSparse_long* order, bool* kept) {
-    const SuiteSparse_long *start = r->p, *row = r->i;
-    SuiteSparse_long reached = -1;
-    for (size_t j = 0; j < r->ncol; j++) {
-        SuiteSparse_long deepest = -1;
-        for (SuiteSparse_long k = start[j]; k < start[j + 1]; k++) {
-            deepest = row[k] > deepest ? row[k] : deepest;
+static int find_root(int* parent, int i) {
+    while (parent[i] != i) {
+        i = parent[i] = parent[parent[i]];
+    }
+    return i;
+}
+
+typedef struct row_set {
+    int count, width, fixed;
+    const int *start, *column;
+    const double* value;
+    double tolerance;
+    bool* kept;
+    int* parent; // [width] union-find over columns that rows tie together
+    int* number; // [width] of a column in the set at hand, -1 = not in it
+    int* first;  // [width] first row of the set with this root, -1 = none
+    int* next;   // [count] next row of the same set, -1 = none
+    int* list;   // [count] rows of the set at hand
+} row_set;
+
+// Lists the rows of each set, in order, by the root of their columns.
+static void split(row_set* s) {
+    for (int c = 0; c < s->width; c++) {
+        s->parent[c] = c;
+        s->number[c] = s->first[c] = -1;
+    }
+    for (int i = 0; i < s->count; i++) {
+        for (int k = s->start[i] + 1; k < s->start[i + 1]; k++) {
+            s->parent[find_root(s->parent, s->column[k])] = find_root(s->parent, s->column[k - 1]);
         }
-        kept[order ? (size_t)order[j] : j] = deepest > reached;
-        reached = deepest > reached ? deepest : reached;
+    }
+    for (int i = s->count - 1; i >= 0; i--) {
+        s->next[i] = -1;
+        if (s->start[i] < s->start[i + 1]) {
+            int root = find_root(s->parent, s->column[s->start[i]]);
+            s->next[i] = s->first[root];
+            s->first[root] = i;
+        }
     }
 }
 
-ruga_status ruga_independent_sparse(int count, int width, const int64_t* start, const int64_t* column,
-                                    const double* value, double tolerance, bool* kept) {
-    _Static_assert(sizeof(SuiteSparse_long) == sizeof(int64_t), "SuiteSparse's long index is 64 bits");
-    cholmod_common common;
-    cholmod_sparse* r = NULL;
-    SuiteSparse_long* order = NULL;
-    cholmod_sparse transpose = {.nrow = (size_t)width,
-                                .ncol = (size_t)count,
-                                .nzmax = (size_t)start[count],
-                                .p = (void*)(uintptr_t)start,
-                                .i = (void*)(uintptr_t)column,
-                                .x = (void*)(uintptr_t)value,
-                                .itype = CHOLMOD_LONG,
-                                .xtype = CHOLMOD_REAL,
-                                .dtype = CHOLMOD_DOUBLE,
-                                .sorted = 0,
-                                .packed = 1};
+// Decides on the set at hand: the `rows` rows in s->list.
+static ruga_status decide(row_set* s, int rows) {
+    ruga_status status = RUGA_OK;
+    int width = 0, fixed = 0;
+    double *a = NULL, *scale = NULL;
+    lapack_int* order = NULL;
+    for (int j = 0; j < rows; j++) {
+        for (int k = s->start[s->list[j]]; k < s->start[s->list[j] + 1]; k++) {
+            int* number = &s->number[s->column[k]];
+            *number = *number < 0 ? width++ : *number;
+        }
+    }
+    int most = rows < width ? rows : width;
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(a, (size_t)rows * (size_t)width));
+    RUGA_TRY_DONE(RUGA_NEW(scale, most));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(order, rows));
+    for (int j = 0; j < rows; j++) {
+        int i = s->list[j];
+        order[j] = i < s->fixed; // not 0: LAPACK takes it first
+        fixed += i < s->fixed;
+        for (int k = s->start[i]; k < s->start[i + 1]; k++) {
+            a[(size_t)j * (size_t)width + (size_t)s->number[s->column[k]]] += s->value[k];
+        }
+    }
+    if (LAPACKE_dgeqp3(LAPACK_COL_MAJOR, width, rows, a, width, order, scale) != 0) {
+        status = ruga_fail(RUGA_NO_MEMORY, "out of memory while choosing among %d rows of handles", rows);
+        goto done;
+    }
+    // Pivoting makes the remainders |R_kk| fall; order[] counts from 1.
+    for (int k = 0; k < most && (k < fixed || fabs(a[(size_t)k * ((size_t)width + 1)]) > s->tolerance); k++) {
+        s->kept[s->list[order[k] - 1]] = true;
+    }
+done:
+    ruga_release(a);
+    ruga_release(scale);
+    ruga_release(order);
+    return status;
+}
+
+static ruga_status decide_all(row_set* s) {
+    RUGA_TRY(RUGA_NEW(s->parent, s->width));
+    RUGA_TRY(RUGA_NEW(s->number, s->width));
+    RUGA_TRY(RUGA_NEW(s->first, s->width));
+    RUGA_TRY(RUGA_NEW(s->next, s->count));
+    RUGA_TRY(RUGA_NEW(s->list, s->count));
+    split(s);
+    for (int root = 0; root < s->width; root++) {
+        int rows = 0;
+        for (int i = s->first[root]; i >= 0; i = s->next[i]) {
+            s->list[rows++] = i;
+        }
+        if (rows) {
+            RUGA_TRY(decide(s, rows));
+        }
+    }
+    return RUGA_OK;
+}
+
+ruga_status ruga_independent_rows(int count, int width, int fixed, const int* start, const int* column,
+                                  const double* value, double tolerance, bool* kept) {
+    row_set s = {.count = count,
+                 .width = width,
+                 .fixed = fixed,
+                 .start = start,
+                 .column = column,
+                 .value = value,
+                 .tolerance = tolerance,
+                 .kept = kept};
+    memset(kept, 0, (size_t)count * sizeof *kept);
     // The bits of a BLAS result depend on the number of its threads.
     int threads = openblas_get_num_threads();
     openblas_set_num_threads(1);
-    cholmod_l_start(&common);
-    common.print = 0;
-    SuiteSparse_long rank = SuiteSparseQR_C(SPQR_ORDERING_FIXED, tolerance, width, 0, &transpose, NULL, NULL,
-                                            NULL, NULL, &r, &order, NULL, NULL, NULL, &common);
-    ruga_status status = RUGA_OK;
-    if (rank < 0 || !r) {
-        status =
-            common.status == CHOLMOD_OUT_OF_MEMORY
-                ? ruga_fail(RUGA_NO_MEMORY, "out of memory while choosing among %d rows of handles", count)
-                : ruga_fail(RUGA_LIBRARY, "SuiteSparseQR failed on %d rows of handles (status %d)", count,
-                            common.status);
-    } else {
-        read_live(r, order, kept);
-    }
-    cholmod_l_free_sparse(&r, &common);
-    cholmod_l_free((size_t)count, sizeof *order, order, &common);
-    cholmod_l_finish(&common);
+    ruga_status status = decide_all(&s);
     openblas_set_num_threads(threads);
+    ruga_release(s.parent);
+    ruga_release(s.number);
+    ruga_release(s.first);
+    ruga_release(s.next);
+    ruga_release(s.list);
     return status;
 }
