@@ -16,6 +16,9 @@
 #include "lattice/union_find.h"
 
 static const double SLIVER = 1e-9;
+// A cap below this part of a cell's face joins nothing; it only tells slivers where to go. A face of the
+// surface exactly on a plane leaves a layer without thickness beyond it, and that layer must not be a bridge.
+static const double THIN = 1e-9;
 static const double GAUSS_WEIGHT[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
 enum { EMPTY = -1 }; // entries of a cell's sub-cells: >= 0 crossed, EMPTY, or full(piece)
@@ -33,7 +36,7 @@ typedef struct surface_cell {
 // Two components (pieces, later elements) meet across a cell face.
 typedef struct link {
     int low, high; // on the negative and the positive side of the plane; full(element) for a full cell
-    int axis;
+    int axis;      // -1: joins nothing
     double area;
 } link;
 
@@ -123,10 +126,12 @@ static ruga_status join_crossed_faces(assembly* assembly) {
         const ruga_cap_face* face = &caps->face[f];
         for (int r = face->region_first; r < face->region_first + face->region_count; r++) {
             int low = assembly->pieces->region_piece[r][0], high = assembly->pieces->region_piece[r][1];
-            if (face->index[face->axis] % 3 != 0) {
+            double area = fabs(caps->region_area[r]);
+            bool inside = face->index[face->axis] % 3 != 0;
+            if (inside && area >= THIN) {
                 ruga_sets_unite(assembly->parent, low, high);
             } else {
-                RUGA_TRY(add_link(assembly, low, high, face->axis, fabs(caps->region_area[r])));
+                RUGA_TRY(add_link(assembly, low, high, inside ? -1 : face->axis, area));
             }
         }
     }
@@ -355,11 +360,11 @@ static ruga_status drop_slivers(assembly* assembly) {
     for (int e = 0; e < lattice->element_count; e++) {
         assembly->target[e] = number[assembly->target[e]];
     }
-    // A link that ended in a sliver ties nothing any more.
+    // A link that is thin or ended in a sliver ties nothing.
     int links = 0;
     for (int i = 0; i < assembly->link_count; i++) {
         link link = assembly->link[i];
-        if (number[link.low] >= 0 && number[link.high] >= 0) {
+        if (link.axis >= 0 && link.area >= THIN && number[link.low] >= 0 && number[link.high] >= 0) {
             link.low = number[link.low];
             link.high = number[link.high];
             assembly->link[links++] = link;
