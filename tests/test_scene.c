@@ -475,6 +475,47 @@ static void remeshing_comes_before_regions(void** state) {
     ruga_scene_clear(&fine);
 }
 
+// Real surfaces as the mesh of an embedded scene: closed ones are read, open ones end with the hole's place.
+static void real_surfaces_are_read_or_refused(void** state) {
+    (void)state;
+    static const struct {
+        const char* name;
+        ruga_status status;
+    } files[] = {
+        {"sh3d_blanket.obj", RUGA_BAD_MESH},
+        {"ipc_sheet2000.obj", RUGA_BAD_MESH},
+        {"makehuman_base.obj", RUGA_BAD_MESH},
+        {"makehuman_sportsuit01.obj", RUGA_BAD_MESH},
+        {"makehuman_skirt.obj", RUGA_BAD_MESH},
+        {"spot_control_mesh.obj", RUGA_BAD_MESH},
+        {"market_pillow.gltf", RUGA_BAD_INPUT}, // compressed
+        {"market_pillow_watertight.obj", RUGA_OK},
+        {"market_sofa_watertight.obj", RUGA_OK},
+        {"sh3d_teddyBear_body_watertight.obj", RUGA_OK},
+        {"makehuman_head_watertight.obj", RUGA_OK},
+    };
+    const char* data = getenv("RUGA_DATA");
+    char folder[512], text[256];
+    (void)snprintf(folder, sizeof folder, "%s/surface", data ? data : RUGA_SOURCE_DIR "/../shared/data");
+    DIR* directory = opendir(folder);
+    if (!directory) {
+        print_message("skipped: no surfaces in %s; set RUGA_DATA\n", folder);
+        skip();
+    }
+    (void)closedir(directory);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        (void)snprintf(text, sizeof text, "mesh: {file: %s}\n", files[i].name);
+        ruga_scene scene;
+        assert_status(ruga_scene_read_text(text, "scene.yaml", folder, 0, NULL, &scene), files[i].status);
+        if (files[i].status == RUGA_OK) {
+            ruga_scene_clear(&scene);
+        } else {
+            assert_sentence("scene.yaml:1: mesh.file: ");
+            assert_sentence(files[i].name);
+        }
+    }
+}
+
 static void sets_are_applied_before_validation(void** state) {
     (void)state;
     static const char* const sets[] = {"skin.thickness=3 mm",   "gravity=[0, 0, -9.81]",
@@ -756,6 +797,7 @@ int main(void) {
         cmocka_unit_test(vertices_are_those_of_the_file),
         cmocka_unit_test(regions_may_lie_inside_the_material),
         cmocka_unit_test(remeshing_comes_before_regions),
+        cmocka_unit_test(real_surfaces_are_read_or_refused),
         cmocka_unit_test(sets_are_applied_before_validation),
         cmocka_unit_test(hash_is_of_what_a_scene_says),
         cmocka_unit_test(each_shows_every_key_with_its_value),
