@@ -14,10 +14,14 @@
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
+#include <CGAL/Polygon_mesh_processing/repair.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/box_intersection_d.h>
 
+#include <cmath>
+#include <memory>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -64,10 +68,9 @@ struct ruga_cgal_locator {
     Tree tree;
 };
 
-ruga_status ruga_cgal_locator_create(int vertex_count, const double* position, int triangle_count,
-                                     const int* triangle, ruga_cgal_locator** locator) {
+ruga_status ruga_cgal_locator_create(const double* position, int triangle_count, const int* triangle,
+                                     ruga_cgal_locator** locator) {
     *locator = nullptr;
-    (void)vertex_count;
     RUGA_SHIM_BEGIN
     auto made = std::make_unique<ruga_cgal_locator>();
     for (int f = 0; f < triangle_count; f++) {
@@ -134,6 +137,8 @@ ruga_status ruga_cgal_surface_create(const ruga_cgal_surface_def* def, ruga_cgal
     RUGA_SHIM_BEGIN
     auto made = std::make_unique<ruga_cgal_surface>();
     add_faces(*def, *made);
+    CGAL::Polygon_mesh_processing::remove_isolated_vertices(
+        made->mesh); // numbers stay until garbage collection
     for (int e = 0; e < def->feature_count; e++) {
         auto halfedge = made->mesh.halfedge(Vertex(static_cast<unsigned>(def->feature[e][0])),
                                             Vertex(static_cast<unsigned>(def->feature[e][1])));
@@ -162,6 +167,21 @@ ruga_status ruga_cgal_surface_remesh(ruga_cgal_surface* surface, double edge, in
     surface->mesh.collect_garbage();
     return RUGA_OK;
     RUGA_SHIM_END(library)
+}
+
+void ruga_cgal_surface_edges(const ruga_cgal_surface* surface, double edge, double* mean, double* spread) {
+    const Surface& mesh = surface->mesh;
+    double sum = 0;
+    double squares = 0;
+    for (Surface::Edge_index e : mesh.edges()) {
+        auto end = mesh.halfedge(e);
+        double length =
+            std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(end)), mesh.point(mesh.target(end))));
+        sum += length;
+        squares += std::log(length / edge) * std::log(length / edge);
+    }
+    *mean = sum / static_cast<double>(mesh.number_of_edges());
+    *spread = std::sqrt(squares / static_cast<double>(mesh.number_of_edges()));
 }
 
 int ruga_cgal_surface_vertex_count(const ruga_cgal_surface* surface) {

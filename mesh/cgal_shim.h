@@ -22,16 +22,17 @@ ruga_status ruga_cgal_box_pairs(int count, const double (*box)[6], ruga_cgal_pai
 
 // The nearest triangle of a fixed set.
 typedef struct ruga_cgal_locator ruga_cgal_locator;
-ruga_status ruga_cgal_locator_create(int vertex_count, const double* position, int triangle_count,
-                                     const int* triangle, ruga_cgal_locator** locator);
+ruga_status ruga_cgal_locator_create(const double* position, int triangle_count, const int* triangle,
+                                     ruga_cgal_locator** locator);
 void ruga_cgal_locator_destroy(ruga_cgal_locator** locator);
 // For each of the points [count][3], its nearest triangle, face [count], and the point of it, nearest
 // [count][3].
 ruga_status ruga_cgal_locator_nearest(const ruga_cgal_locator* locator, int count, const double* point,
                                       int* face, double* nearest);
 
-// A triangle mesh being remeshed. Patches are kept apart: a face belongs to one, edges between two patches,
-// features and open boundaries are split and collapsed along themselves only, fixed vertices stay.
+// A triangle mesh being remeshed; vertices without faces are left out. Patches are kept apart: a face belongs
+// to one, edges between two patches, features and open boundaries are split and collapsed along themselves
+// only, fixed vertices stay.
 typedef struct ruga_cgal_surface ruga_cgal_surface;
 typedef struct ruga_cgal_surface_def {
     int vertex_count;
@@ -47,6 +48,8 @@ ruga_status ruga_cgal_surface_create(const ruga_cgal_surface_def* def, ruga_cgal
 void ruga_cgal_surface_destroy(ruga_cgal_surface** surface);
 ruga_status ruga_cgal_surface_remesh(ruga_cgal_surface* surface, double edge, int iterations,
                                      int relaxations);
+// Mean length of the edges, and the root mean square of log(length / edge).
+void ruga_cgal_surface_edges(const ruga_cgal_surface* surface, double edge, double* mean, double* spread);
 int ruga_cgal_surface_vertex_count(const ruga_cgal_surface* surface);
 int ruga_cgal_surface_triangle_count(const ruga_cgal_surface* surface);
 // position [V][3], triangle [F][3], patch [F]

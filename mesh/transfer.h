@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// What a remeshed surface takes over from the old one.
+#ifndef RUGA_MESH_TRANSFER_H
+#define RUGA_MESH_TRANSFER_H
+
+#include "mesh/mesh.h"
+
+// Fills source_vertex (of vertices that are within 1e-9 `edge` of an old one, which they are put on exactly)
+// and, where the old mesh has them, uv and uv_triangle of `mesh`, whose positions and triangles are set.
+// `edge` (m) is the length of the new edges.
+ruga_status ruga_mesh_transfer(const ruga_mesh* old, double edge, ruga_mesh* mesh);
+
+#endif
