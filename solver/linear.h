@@ -3,7 +3,8 @@
 //
 // Direct solution of sparse symmetric systems, with the inertia of the matrix: Cholesky (CHOLMOD, supernodal)
 // for positive definite ones, and a multifrontal LDL^T for indefinite ones such as [K H^T; H 0]. The pattern
-// is analysed once; numeric factors are made many times. BLAS runs on one thread: bits do not depend on threads.
+// is analysed once; numeric factors are made many times. BLAS runs on one thread: bits do not depend on
+// threads.
 #ifndef RUGA_SOLVER_LINEAR_H
 #define RUGA_SOLVER_LINEAR_H
 
@@ -14,25 +15,30 @@ typedef enum ruga_factor_kind { RUGA_FACTOR_CHOLESKY, RUGA_FACTOR_LDL } ruga_fac
 typedef struct ruga_factor ruga_factor;
 
 typedef struct ruga_factor_info {
-    bool success;  // Cholesky: positive definite. LDL: no pivot had to be perturbed
+    bool success;                 // Cholesky: positive definite. LDL: no pivot had to be perturbed
     int positive, negative, zero; // inertia; for a failed Cholesky negative = 1 at least (unknown)
-    int perturbed; // LDL: pivots replaced
+    int perturbed;  // LDL: = zero; pivots that are round-off (redundant rows): their unknowns are 0 in
+                    // solutions
     double entries; // stored in the factor
     double flops;
 } ruga_factor_info;
 
 // Analyses the pattern of `lower` (values unused). The unknowns are grouped into `node_count` nodes,
 // node i = unknowns [node_start[i], node_start[i + 1]), which are ordered together; NULL: each by itself.
-// `last` [node_count] or NULL: nodes marked true (multipliers) are eliminated only after their neighbours.
+// `last` [node_count] or NULL: nodes marked true are multipliers (no diagonal of their own): eliminated after
+// at least half of their neighbours, and scaled by themselves.
 ruga_status ruga_factor_create(ruga_factor_kind kind, const ruga_sparse* lower, int node_count,
                                const int* node_start, const bool* last, ruga_factor** factor);
 void ruga_factor_destroy(ruga_factor** factor);
 
 // Numeric factorisation of the matrix with `values` in the analysed pattern. A matrix that is not positive
-// definite is not an error: see info.
+// definite is not an error: see info. Values that are not finite are. Nothing is allocated from the second
+// call on, unless more pivots must be delayed to parent fronts than ever before. Uses ruga_threads() threads.
 ruga_status ruga_factor_numeric(ruga_factor* factor, const double* values, ruga_factor_info* info);
 
-// x = A^-1 b; b and x [n], may be the same. Only after a numeric factorisation with success (LDL: always).
+// x = A^-1 b; b and x [n], may be the same. Only after a numeric factorisation with success (LDL: always;
+// where pivots are zero, b must be consistent). Refined where the residual is above 1e-12 |b| and round-off
+// in x does not explain it (LDL). One call at a time on the same factor: the work space is part of it.
 ruga_status ruga_factor_solve(ruga_factor* factor, const double* b, double* x);
 
 // LDL only: x = (L |D| L^T)^-1 b, positive definite: the preconditioner for MINRES (Gill et al. 1992).
