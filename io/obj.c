@@ -49,7 +49,7 @@ static ruga_status resolve_index(ruga_text* text, long long written, int count, 
 
 static ruga_status read_corner(ruga_text* text, ruga_polygons* polygons) {
     long long written;
-    int vertex, uv = -1;
+    int vertex = -1, uv = -1;
     if (!ruga_text_integer(text, '/', &written)) {
         return fail_word(text, "a face's corner (v, v/vt, v//vn or v/vt/vn)");
     }
