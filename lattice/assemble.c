@@ -441,11 +441,19 @@ static ruga_status number_nodes(ruga_lattice* lattice, int* parent) {
     return RUGA_OK;
 }
 
-// Volumes in cells become cubic metres; rounding below zero is cut off.
+// Volumes in cells become cubic metres. What is below zero by rounding, or by a good deal where the surface
+// crosses itself and is inside out, is cut off, and the rest scaled so that the total stays the volume
+// enclosed.
 static void scale_volumes(ruga_lattice* lattice) {
-    double cell = lattice->cell_size[0] * lattice->cell_size[1] * lattice->cell_size[2];
+    double total = 0, positive = 0;
     for (size_t i = 0; i < 27 * (size_t)lattice->element_count; i++) {
-        lattice->volume[i] = lattice->volume[i] > 0 ? cell * lattice->volume[i] : 0;
+        total += lattice->volume[i];
+        positive += lattice->volume[i] > 0 ? lattice->volume[i] : 0;
+    }
+    double cell = lattice->cell_size[0] * lattice->cell_size[1] * lattice->cell_size[2];
+    double scale = positive > 0 ? cell * (total / positive) : 0;
+    for (size_t i = 0; i < 27 * (size_t)lattice->element_count; i++) {
+        lattice->volume[i] = lattice->volume[i] > 0 ? scale * lattice->volume[i] : 0;
     }
 }
 

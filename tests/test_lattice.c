@@ -676,6 +676,80 @@ static void lips_move_on_their_own(void** state) {
     ruga_mesh_clear(&mesh);
 }
 
+// ---- a real head ----
+
+// Vertices and triangulated polygons of an OBJ file, nothing else; false where there is no such file.
+static bool read_obj(const char* path, ruga_mesh* mesh) {
+    enum { MOST = 40000 };
+    FILE* file = fopen(path, "r");
+    if (!file) {
+        return false;
+    }
+    double* position = malloc(sizeof(double) * 3 * MOST);
+    int* triangle = malloc(sizeof(int) * 3 * MOST);
+    ruga_mesh_def def = {.positions = position, .triangles = triangle};
+    char line[512];
+    while (fgets(line, sizeof line, file)) {
+        double* x = position + 3 * def.vertex_count;
+        if (strncmp(line, "v ", 2) == 0) {
+            assert_int_equal(sscanf(line + 2, "%lf %lf %lf", &x[0], &x[1], &x[2]), 3);
+            def.vertex_count++;
+        } else if (strncmp(line, "f ", 2) == 0) {
+            int corner[3], count = 0;
+            for (char* word = strtok(line + 2, " \r\n"); word; word = strtok(NULL, " \r\n")) {
+                corner[count < 2 ? count : 2] = atoi(word) - 1;
+                if (++count >= 3) {
+                    memcpy(triangle + 3 * def.triangle_count++, corner, sizeof corner);
+                    corner[1] = corner[2];
+                }
+            }
+        }
+        assert_true(def.vertex_count < MOST && def.triangle_count < MOST - 4);
+    }
+    (void)fclose(file);
+    assert_ok(ruga_mesh_from_def(&def, mesh));
+    free(position);
+    free(triangle);
+    return true;
+}
+
+static void lips_of_a_head_have_their_own_elements(void** state) {
+    (void)state;
+    const char* data = getenv("RUGA_DATA");
+    char path[1024];
+    (void)snprintf(path, sizeof path, "%s/surface/makehuman_head_watertight.obj",
+                   data ? data : RUGA_SOURCE_DIR "/../shared/data");
+    ruga_mesh mesh;
+    if (!read_obj(path, &mesh)) {
+        print_message("skipped: no real surfaces (set RUGA_DATA)\n");
+        skip();
+    }
+    ruga_connectivity connectivity;
+    assert_ok(ruga_connectivity_create(&mesh, &connectivity));
+    double volume = ruga_mesh_volume(&mesh);
+    for (int cells = 8; cells <= 12; cells++) {
+        ruga_lattice lattice;
+        ruga_lattice_def def = {.cells = cells, .degree = 2, .fill = RUGA_FILL_MESH};
+        assert_ok(ruga_lattice_create(&mesh, &connectivity, &def, &lattice));
+        assert_near(total_volume(&lattice), volume, 1e-9 * volume);
+        check_embedding(&mesh, &lattice);
+        // On the mid-line: the red of the upper lip and that of the lower one, 7 mm apart.
+        const int upper = lattice.vertex_element[468], lower = lattice.vertex_element[495];
+        // With 9 cells a plane runs through the middle of the face, and the cells beside it reach past the
+        // corners of the mouth (at 2.4 cm), where the lips are one piece.
+        if (cells == 9) {
+            assert_int_equal(upper, lower);
+            ruga_lattice_clear(&lattice);
+            continue;
+        }
+        assert_int_not_equal(upper, lower);
+        assert_true(lattice.superimposed > 0);
+        ruga_lattice_clear(&lattice);
+    }
+    ruga_connectivity_clear(&connectivity);
+    ruga_mesh_clear(&mesh);
+}
+
 // ---- box ----
 
 static void box_of_a_flat_sheet_lies_under_it(void** state) {
@@ -919,6 +993,7 @@ int main(void) {
         cmocka_unit_test(mass_of_a_slab_that_wobbles_about_the_planes),
         cmocka_unit_test(cavities_belong_to_the_body_around_them),
         cmocka_unit_test(lips_move_on_their_own),
+        cmocka_unit_test(lips_of_a_head_have_their_own_elements),
         cmocka_unit_test(box_of_a_flat_sheet_lies_under_it),
         cmocka_unit_test(box_of_a_closed_mesh_is_its_own),
         cmocka_unit_test(shape_functions_have_their_gradients),
