@@ -36,6 +36,10 @@
 
 static const double INDEPENDENCE = 1e-3;
 
+// Sample points of an element's material: its quadrature points, and where the cell is full also the points of
+// {0, 1/2, 1}^3, so that a thin region on the material's outer face holds all of the face.
+enum { GRID_POINTS = 27, ELEMENT_POINTS = RUGA_LATTICE_POINTS + GRID_POINTS };
+
 // A row kept for one component.
 typedef struct held_row {
     int handle;
@@ -45,7 +49,7 @@ typedef struct held_row {
     double point[3];
 } held_row;
 
-// Material points carry numbers: vertices of the surface first, then 27 for each element.
+// Material points carry numbers: vertices of the surface first, then ELEMENT_POINTS for each element.
 typedef struct builder {
     const ruga_lattice* lattice;
     const ruga_mesh* mesh;
@@ -76,12 +80,33 @@ static const double* point_weight(const builder* b, int point) {
     int n = b->lattice->nodes_per_element;
     int v = b->lattice->vertex_count;
     return point < v ? b->lattice->vertex_weight + (size_t)point * (size_t)n
-                     : b->shape + (size_t)((point - v) % RUGA_LATTICE_POINTS * n);
+                     : b->shape + (size_t)((point - v) % ELEMENT_POINTS * n);
 }
 
 static int point_element(const builder* b, int point) {
     int v = b->lattice->vertex_count;
-    return point < v ? b->lattice->vertex_element[point] : (point - v) / RUGA_LATTICE_POINTS;
+    return point < v ? b->lattice->vertex_element[point] : (point - v) / ELEMENT_POINTS;
+}
+
+// Local coordinates and rest position of a sample point of an element.
+static void sample_point(const ruga_lattice* lattice, int element, int sample, double xi[3], double x[3]) {
+    if (sample < RUGA_LATTICE_POINTS) {
+        ruga_lattice_point(lattice, element, sample, xi, x);
+        return;
+    }
+    int g = sample - RUGA_LATTICE_POINTS, at[3] = {g % 3, g / 3 % 3, g / 9};
+    for (int i = 0; i < 3; i++) {
+        xi[i] = 0.5 * at[i];
+        x[i] = lattice->origin[i] + (lattice->element_cell[3 * element + i] + xi[i]) * lattice->cell_size[i];
+    }
+}
+
+static bool is_full(const ruga_lattice* lattice, int element) {
+    double sum = 0, cell = lattice->cell_size[0] * lattice->cell_size[1] * lattice->cell_size[2];
+    for (int g = 0; g < RUGA_LATTICE_POINTS; g++) {
+        sum += lattice->volume[RUGA_LATTICE_POINTS * element + g];
+    }
+    return sum > (1 - 1e-9) * cell;
 }
 
 static void point_rest(const builder* b, int point, double x[3]) {
@@ -90,8 +115,7 @@ static void point_rest(const builder* b, int point, double x[3]) {
     if (point < v) {
         memcpy(x, b->mesh->position + 3 * (size_t)point, 3 * sizeof *x);
     } else {
-        ruga_lattice_point(b->lattice, (point - v) / RUGA_LATTICE_POINTS, (point - v) % RUGA_LATTICE_POINTS,
-                           xi, x);
+        sample_point(b->lattice, (point - v) / ELEMENT_POINTS, (point - v) % ELEMENT_POINTS, xi, x);
     }
 }
 
@@ -127,11 +151,15 @@ static ruga_status claim_region(builder* b, int handle) {
     }
     if (is_spatial(region)) {
         double slack = ruga_region_slack(b->mesh);
-        for (int i = 0; i < RUGA_LATTICE_POINTS * lattice->element_count; i++) {
-            double x[3];
-            point_rest(b, lattice->vertex_count + i, x);
-            if (lattice->volume[i] > 0 && ruga_region_contains_within(region, x, slack)) {
-                claim_point(b, handle, lattice->vertex_count + i);
+        for (int e = 0; e < lattice->element_count; e++) {
+            bool full = is_full(lattice, e);
+            for (int g = 0; g < ELEMENT_POINTS; g++) {
+                bool material = g < RUGA_LATTICE_POINTS ? lattice->volume[RUGA_LATTICE_POINTS * e + g] > 0 : full;
+                double x[3], xi[3];
+                sample_point(lattice, e, g, xi, x);
+                if (material && ruga_region_contains_within(region, x, slack)) {
+                    claim_point(b, handle, lattice->vertex_count + ELEMENT_POINTS * e + g);
+                }
             }
         }
     }
@@ -426,8 +454,8 @@ static bool same_handles(const builder* b, int axis, int other) {
 
 static ruga_status allocate(builder* b) {
     const ruga_lattice* lattice = b->lattice;
-    b->point_count = lattice->vertex_count + RUGA_LATTICE_POINTS * lattice->element_count;
-    RUGA_TRY(RUGA_NEW(b->shape, RUGA_LATTICE_POINTS * (size_t)lattice->nodes_per_element));
+    b->point_count = lattice->vertex_count + ELEMENT_POINTS * lattice->element_count;
+    RUGA_TRY(RUGA_NEW(b->shape, ELEMENT_POINTS * (size_t)lattice->nodes_per_element));
     RUGA_TRY(RUGA_NEW(b->selected, b->mesh->vertex_count));
     RUGA_TRY(RUGA_NEW_ZERO(b->seen, b->handle_count));
     RUGA_TRY(RUGA_NEW(b->owner, b->point_count));
@@ -436,9 +464,9 @@ static ruga_status allocate(builder* b) {
     RUGA_TRY(RUGA_NEW(b->element_start, lattice->element_count + 1));
     RUGA_TRY(RUGA_NEW(b->point, b->point_count));
     RUGA_TRY(RUGA_NEW(b->tried, lattice->element_count));
-    for (int g = 0; g < RUGA_LATTICE_POINTS && lattice->element_count > 0; g++) {
+    for (int g = 0; g < ELEMENT_POINTS && lattice->element_count > 0; g++) {
         double xi[3], x[3];
-        ruga_lattice_point(lattice, 0, g, xi, x);
+        sample_point(lattice, 0, g, xi, x);
         ruga_lattice_shape(lattice, xi, b->shape + (size_t)(g * lattice->nodes_per_element), NULL);
     }
     return RUGA_OK;

@@ -13,6 +13,8 @@
 #include "core/progress.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_NEWTON = 60, MAX_CG = 80, MAX_BACKTRACKS = 20 };
@@ -298,7 +300,7 @@ static ruga_status factor_preconditioner(ruga_interior* in, const double* q, con
     RUGA_TRY(ruga_elasticity_energy(in->elasticity, q, true, &energy, NULL, in->stiffness, NULL));
     add_inertia(in, in->stiffness);
     RUGA_TRY(ruga_shell_energy(in->skin->shell, x, 1, &shell, NULL, in->skin_stiffness));
-    ruga_elasticity_add_embedded(in->elasticity, &skin_matrix, in->stiffness);
+    RUGA_TRY(ruga_elasticity_add_embedded(in->elasticity, &skin_matrix, in->stiffness));
     double shift = 0;
     ruga_factor_info info;
     for (int attempt = 0; attempt < 12; attempt++) {
@@ -520,6 +522,7 @@ ruga_status ruga_interior_minimize(ruga_interior* in, double tolerance, double* 
     for (int k = 0; k < MAX_NEWTON; k++, result->iterations++) {
         RUGA_TRY(solve_skin(in, 0.5 * tolerance, x, embedded, result));
         RUGA_TRY(residual(in, q, x, embedded, result, &total, r));
+        if (getenv("RUGA_DEBUG")) fprintf(stderr, "outer %d res %.3e skin %.2e out %d E %.12e\n", k, result->residual, result->skin.residual, result->skin.outcome, total);
         result->converged = result->residual <= tolerance;
         if (result->converged) {
             return RUGA_OK;

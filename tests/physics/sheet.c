@@ -122,7 +122,7 @@ ruga_status sheet_run(const sheet_def* def, sheet_frame* frames, double* wavelen
             double side = i ? 1 : -1;
             handles[i].kind = RUGA_HANDLE_MOVE;
             handles[i].region = (ruga_region){.kind = RUGA_REGION_PLANE,
-                                              .center = {side * (length / 2 - 0.5 * *wavelength), 0, 0},
+                                              .center = {side * length / 2, 0, 0},
                                               .normal = {side, 0, 0}};
             handles[i].translate[0] = -side * 0.5 * length * def->strain[def->count - 1] * e;
             handles[i].ramped = true;
