@@ -13,12 +13,16 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/compute_normal.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
 #include <CGAL/Polygon_mesh_processing/repair.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/box_intersection_d.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -60,10 +64,17 @@ ruga_status ruga_cgal_box_pairs(int count, const double (*box)[6], ruga_cgal_pai
     RUGA_SHIM_END(library)
 }
 
+using Triangle = Kernel::Triangle_3;
+using Triangles = std::vector<Triangle>;
+using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
+using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+
+static Triangle triangle_at(const double* position, const int* v) {
+    return Triangle(point_at(position + 3 * v[0]), point_at(position + 3 * v[1]),
+                    point_at(position + 3 * v[2]));
+}
+
 struct ruga_cgal_locator {
-    using Triangles = std::vector<Kernel::Triangle_3>;
-    using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
-    using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
     Triangles triangles;
     Tree tree;
 };
@@ -74,9 +85,7 @@ ruga_status ruga_cgal_locator_create(const double* position, int triangle_count,
     RUGA_SHIM_BEGIN
     auto made = std::make_unique<ruga_cgal_locator>();
     for (int f = 0; f < triangle_count; f++) {
-        const int* v = triangle + 3 * f;
-        made->triangles.emplace_back(point_at(position + 3 * v[0]), point_at(position + 3 * v[1]),
-                                     point_at(position + 3 * v[2]));
+        made->triangles.push_back(triangle_at(position, triangle + 3 * f));
     }
     made->tree.rebuild(made->triangles.cbegin(), made->triangles.cend());
     made->tree.build();
@@ -109,12 +118,75 @@ struct ruga_cgal_surface {
     Surface::Property_map<Surface::Edge_index, bool> feature;
     Surface::Property_map<Vertex, bool> fixed;
     Surface::Property_map<Face, int> patch;
+    std::vector<ruga_cgal_locator> origin; // of each patch, as it was
 
     ruga_cgal_surface()
         : feature(mesh.add_property_map<Surface::Edge_index, bool>("e:ruga_feature", false).first),
           fixed(mesh.add_property_map<Vertex, bool>("v:ruga_fixed", false).first),
           patch(mesh.add_property_map<Face, int>("f:ruga_patch", -1).first) {}
 };
+
+// Puts vertices back on their patch, on a side of it that faces their way: the nearest point of all may lie
+// on the other side of a narrow gap or of a thin wall. Vertices on lines and borders are on the patch
+// already.
+struct Projection {
+    const ruga_cgal_surface* surface;
+    double reach;
+
+    bool on_line(Vertex v) const {
+        for (auto h : surface->mesh.halfedges_around_target(surface->mesh.halfedge(v))) {
+            auto e = surface->mesh.edge(h);
+            if (surface->mesh.is_border(e) || surface->feature[e]) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    Point facing(const Tree& tree, const Point& point, const Kernel::Vector_3& normal) const {
+        std::vector<Triangles::const_iterator> near;
+        tree.all_intersected_primitives(Kernel::Sphere_3(point, reach * reach), std::back_inserter(near));
+        Point best = point;
+        double least = std::numeric_limits<double>::max();
+        for (auto triangle : near) {
+            Point projected = Kernel().construct_projected_point_3_object()(*triangle, point);
+            double distance = CGAL::squared_distance(point, projected);
+            if (distance < least && triangle->supporting_plane().orthogonal_vector() * normal > 0) {
+                best = projected;
+                least = distance;
+            }
+        }
+        return best;
+    }
+
+    Point operator()(Vertex v) const {
+        const Point point = surface->mesh.point(v);
+        if (on_line(v)) {
+            return point;
+        }
+        const Tree& tree =
+            surface
+                ->origin[static_cast<size_t>(surface->patch[surface->mesh.face(surface->mesh.halfedge(v))])]
+                .tree;
+        auto normal = CGAL::Polygon_mesh_processing::compute_vertex_normal(v, surface->mesh);
+        auto found = tree.closest_point_and_primitive(point);
+        bool faces = found.second->supporting_plane().orthogonal_vector() * normal > 0;
+        return faces ? found.first : facing(tree, point, normal);
+    }
+};
+
+static void keep_origin(const ruga_cgal_surface_def& def, ruga_cgal_surface& surface) {
+    int patches = 1 + *std::max_element(def.patch, def.patch + def.triangle_count);
+    surface.origin = std::vector<ruga_cgal_locator>(static_cast<size_t>(patches));
+    for (int f = 0; f < def.triangle_count; f++) {
+        surface.origin[static_cast<size_t>(def.patch[f])].triangles.push_back(
+            triangle_at(def.position, def.triangle + 3 * f));
+    }
+    for (ruga_cgal_locator& patch : surface.origin) {
+        patch.tree.rebuild(patch.triangles.cbegin(), patch.triangles.cend());
+        patch.tree.build();
+    }
+}
 
 static void add_faces(const ruga_cgal_surface_def& def, ruga_cgal_surface& surface) {
     for (int v = 0; v < def.vertex_count; v++) {
@@ -137,6 +209,7 @@ ruga_status ruga_cgal_surface_create(const ruga_cgal_surface_def* def, ruga_cgal
     RUGA_SHIM_BEGIN
     auto made = std::make_unique<ruga_cgal_surface>();
     add_faces(*def, *made);
+    keep_origin(*def, *made);
     CGAL::Polygon_mesh_processing::remove_isolated_vertices(
         made->mesh); // numbers stay until garbage collection
     for (int e = 0; e < def->feature_count; e++) {
@@ -163,7 +236,8 @@ ruga_status ruga_cgal_surface_remesh(ruga_cgal_surface* surface, double edge, in
             .number_of_relaxation_steps(static_cast<unsigned>(relaxations))
             .edge_is_constrained_map(surface->feature)
             .vertex_is_constrained_map(surface->fixed)
-            .face_patch_map(surface->patch));
+            .face_patch_map(surface->patch)
+            .projection_functor(Projection{surface, edge}));
     surface->mesh.collect_garbage();
     return RUGA_OK;
     RUGA_SHIM_END(library)
