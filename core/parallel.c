@@ -5,6 +5,7 @@
 #include "core/status.h"
 
 #include <omp.h>
+#include <stdlib.h>
 
 static int thread_count;
 
@@ -12,8 +13,14 @@ void ruga_set_threads(int count) {
     thread_count = count < 0 ? 0 : count;
 }
 
+// Where nobody has said: the environment variable RUGA_THREADS, or all cores.
 int ruga_threads(void) {
-    return thread_count ? thread_count : omp_get_num_procs();
+    if (thread_count == 0) {
+        const char* wanted = getenv("RUGA_THREADS");
+        int count = wanted ? atoi(wanted) : 0;
+        thread_count = count > 0 ? count : omp_get_num_procs();
+    }
+    return thread_count;
 }
 
 void ruga_parallel_for(int count, int chunk_size, ruga_parallel_body* body, void* context) {

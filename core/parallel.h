@@ -6,7 +6,8 @@
 #ifndef RUGA_CORE_PARALLEL_H
 #define RUGA_CORE_PARALLEL_H
 
-// Threads used from now on by this process; 0 = all cores. Never changes a result.
+// Threads used from now on by this process; 0 = RUGA_THREADS of the environment, or all cores. Never
+// changes a result.
 // Declared for users in ruga/ruga.h.
 void ruga_set_threads(int count);
 int ruga_threads(void);

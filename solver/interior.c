@@ -13,8 +13,6 @@
 #include "core/progress.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_NEWTON = 60, MAX_CG = 80, MAX_BACKTRACKS = 20 };
@@ -286,7 +284,25 @@ static void add_inertia(const ruga_interior* in, double* values) {
         values[p] += s * in->mass[p];
     }
     for (int j = 0; j < in->n && s == 0; j++) {
-        values[k->start[j]] *= 1 + 1e-9;
+        values[k->start[j]] *= 1 + 1e-7;
+    }
+}
+
+// Where the skin alone is held it does not follow: there the interior is tied to a fixed point by the foundation,
+// and its neighbours' shell forces act as against a wall.
+static void hold_skin_stiffness(ruga_interior* in, const ruga_sparse* k) {
+    const ruga_foundation* foundation = &in->model->foundation;
+    bool any = false;
+    for (int i = 0; i < in->skin->n && !any; i++) {
+        any = skin_only(in, i);
+    }
+    for (int j = 0; j < in->skin->n && any; j++) {
+        for (int p = k->start[j]; p < k->start[j + 1]; p++) {
+            if (skin_only(in, j) || skin_only(in, k->index[p])) {
+                bool diagonal = p == k->start[j] && foundation->vertex_count > 0;
+                k->value[p] = diagonal ? foundation->diagonal[j / 3] : 0;
+            }
+        }
     }
 }
 
@@ -300,6 +316,7 @@ static ruga_status factor_preconditioner(ruga_interior* in, const double* q, con
     RUGA_TRY(ruga_elasticity_energy(in->elasticity, q, true, &energy, NULL, in->stiffness, NULL));
     add_inertia(in, in->stiffness);
     RUGA_TRY(ruga_shell_energy(in->skin->shell, x, 1, &shell, NULL, in->skin_stiffness));
+    hold_skin_stiffness(in, &skin_matrix);
     RUGA_TRY(ruga_elasticity_add_embedded(in->elasticity, &skin_matrix, in->stiffness));
     double shift = 0;
     ruga_factor_info info;
@@ -522,7 +539,6 @@ ruga_status ruga_interior_minimize(ruga_interior* in, double tolerance, double* 
     for (int k = 0; k < MAX_NEWTON; k++, result->iterations++) {
         RUGA_TRY(solve_skin(in, 0.5 * tolerance, x, embedded, result));
         RUGA_TRY(residual(in, q, x, embedded, result, &total, r));
-        if (getenv("RUGA_DEBUG")) fprintf(stderr, "outer %d res %.3e skin %.2e out %d E %.12e\n", k, result->residual, result->skin.residual, result->skin.outcome, total);
         result->converged = result->residual <= tolerance;
         if (result->converged) {
             return RUGA_OK;
