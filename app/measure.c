@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // Wavelength and amplitude of wrinkles. w = (x - Bq).n with n the embedded surface's vertex normal, less its
-// low-pass part: the averages of w over the calibrated clusters, blended by the clusters' own weights. Lengths, areas
-// and gradients are those of the rest shape.
+// low-pass part: the averages of w over the calibrated clusters, blended by the clusters' own weights.
+// Lengths, areas and gradients are those of the rest shape.
 #include "app/measure.h"
 
 #include "core/memory.h"

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// ruga explain: what a scene means, before any solve.
+#include "app/command.h"
+#include "app/console.h"
+#include "app/estimate.h"
+#include "lattice/motion.h"
+#include "shell/shell.h"
+#include "solver/model.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double edges_good = 8, edges_least = 3; // per wavelength
+
+static const ruga_option options[] = {
+    {"--strain", NULL, "STRAIN",
+     "compressive strain to give the amplitude at, such as 5%\n"
+     "[the scene's largest prescribed compression]",
+     false},
+    {"--set", NULL, "KEY=VALUE", "replace a value of the scene; may be given several times", true},
+    {"--json", "-j", NULL, "print one JSON object in SI units", false},
+    {0},
+};
+
+typedef struct facts {
+    const ruga_scene* scene;
+    const ruga_model* model;
+    ruga_estimate estimate;
+    double strain, amplitude; // NaN where there is no interior or no strain is known
+    double edges;             // per wavelength; NaN where no wrinkles are solved for
+    bool refused;
+} facts;
+
+static ruga_status derive(const ruga_arguments* arguments, facts* f) {
+    const ruga_model_def* def = &f->scene->def;
+    f->estimate = ruga_estimate_model(f->model);
+    f->strain = f->amplitude = f->edges = NAN;
+    if (!def->has_interior) {
+        return RUGA_OK;
+    }
+    if (def->keyframe_count > 0) {
+        f->strain = ruga_motion_largest_compression(def->keyframe_count, def->keyframes);
+    }
+    RUGA_TRY(ruga_quantity(arguments, "--strain", "1", &f->strain));
+    if (f->strain < 0 || f->strain >= 1) {
+        return ruga_fail(RUGA_BAD_INPUT, "the strain %g is not a compression between 0 and 100 %%",
+                         f->strain);
+    }
+    if (isfinite(f->strain)) {
+        f->amplitude = ruga_wrinkle_amplitude(&def->skin, &def->interior, f->strain);
+    }
+    if (f->model->solves_skin) {
+        f->edges = f->model->wavelength / f->model->mean_edge;
+        f->refused = f->edges < edges_least && !def->solver.allow_coarse;
+    }
+    return RUGA_OK;
+}
+
+// ---- for people ----------------------------------------------------------------------------------------
+
+static void say_key(const char* key, const char* value, const char* unit, bool given, void* context) {
+    char text[512];
+    bool plain = !unit || !*unit || (unit[0] == '1' && !unit[1]);
+    (void)snprintf(text, sizeof text, "%s%s%s", value, plain ? "" : " ", plain ? "" : unit);
+    ruga_say(context, "    %-28s %s%s\n", key, text, given ? "" : "  (default)");
+}
+
+static void say_wrinkles(const ruga_arguments* arguments, const facts* f) {
+    if (!f->scene->def.has_interior) {
+        ruga_say(arguments, "wrinkles\n    no interior: nothing sets a wavelength\n");
+        return;
+    }
+    ruga_say(arguments, "wrinkles\n    %-28s %.4g mm\n    %-28s %.3g %%\n", "wavelength",
+             1e3 * f->model->wavelength, "critical strain", 1e2 * f->model->critical_strain);
+    if (isfinite(f->amplitude)) {
+        char name[48];
+        (void)snprintf(name, sizeof name, "amplitude at %.3g %% strain", 1e2 * f->strain);
+        ruga_say(arguments, "    %-28s %.4g mm\n", name, 1e3 * f->amplitude);
+    } else {
+        ruga_say(arguments, "    %-28s give --strain to know it\n", "amplitude");
+    }
+    if (isfinite(f->edges)) {
+        ruga_say(arguments, "    %-28s %.3g (mean edge %.4g mm)\n", "edges per wavelength", f->edges,
+                 1e3 * f->model->mean_edge);
+    }
+}
+
+static void say_sizes(const ruga_arguments* arguments, const facts* f) {
+    const ruga_model* m = f->model;
+    const ruga_estimate* e = &f->estimate;
+    char frame[32], run[32];
+    ruga_duration(e->seconds_per_frame, frame);
+    ruga_duration(e->seconds_per_frame * m->frames, run);
+    ruga_say(arguments, "sizes\n    %-28s %d vertices, %d triangles\n", "mesh", m->mesh.vertex_count,
+             m->mesh.triangle_count);
+    if (m->has_interior) {
+        ruga_say(arguments, "    %-28s %d\n    %-28s %d, %d of them superimposed; %d nodes\n", "clusters",
+                 m->clusters.count, "elements", m->lattice.element_count, m->lattice.superimposed,
+                 m->lattice.node_count);
+    }
+    ruga_say(arguments, "    %-28s %lld of the skin, %lld of the interior, %lld constraints\n",
+             "degrees of freedom", (long long)e->skin_unknowns, (long long)e->interior_unknowns,
+             (long long)e->constraints);
+    ruga_say(arguments, "    %-28s about %.2g MB\n", "memory", e->bytes / 1e6);
+    ruga_say(arguments, "    %-28s roughly %s a frame, %s for %d frames\n", "time", frame, run, m->frames);
+}
+
+static void say_all(const ruga_arguments* arguments, const facts* f) {
+    ruga_say(arguments, "scene, mesh %s\n", f->scene->mesh_name);
+    ruga_scene_each(f->scene, say_key, (void*)(uintptr_t)arguments);
+    say_wrinkles(arguments, f);
+    say_sizes(arguments, f);
+}
+
+// ---- for programs --------------------------------------------------------------------------------------
+
+static void add_key(const char* key, const char* value, const char* unit, bool given, void* context) {
+    (void)json_array_append_new(context, json_pack("{s:s, s:s, s:s, s:b}", "key", key, "value", value, "unit",
+                                                   unit ? unit : "", "default", !given));
+}
+
+static json_t* facts_json(const facts* f) {
+    const ruga_model* m = f->model;
+    const ruga_estimate* e = &f->estimate;
+    json_t* keys = json_array();
+    ruga_scene_each(f->scene, add_key, keys);
+    json_t* unknowns = json_pack("{s:I, s:I, s:I}", "skin", (json_int_t)e->skin_unknowns, "interior",
+                                 (json_int_t)e->interior_unknowns, "constraints", (json_int_t)e->constraints);
+    json_t* warnings = ruga_json_texts(f->scene->warning_count, (const char* const*)f->scene->warning);
+    json_t* wavelength = m->has_interior ? ruga_json_number(m->wavelength) : json_null();
+    json_t* critical = m->has_interior ? ruga_json_number(m->critical_strain) : json_null();
+    return json_pack(
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:i, s:o, s:o, "
+        "s:o, s:b}",
+        "keys", keys, "wavelength", wavelength, "critical_strain", critical, "strain",
+        ruga_json_number(f->strain), "amplitude", ruga_json_number(f->amplitude), "edges_per_wavelength",
+        ruga_json_number(f->edges), "mean_edge", ruga_json_number(m->mean_edge), "vertices",
+        m->mesh.vertex_count, "triangles", m->mesh.triangle_count, "clusters", m->clusters.count, "elements",
+        m->lattice.element_count, "superimposed", m->lattice.superimposed, "lattice_nodes",
+        m->lattice.node_count, "degrees_of_freedom", unknowns, "memory_bytes", ruga_json_number(e->bytes),
+        "frames", m->frames, "seconds_per_frame", ruga_json_number(e->seconds_per_frame), "seconds",
+        ruga_json_number(e->seconds_per_frame * m->frames), "warnings", warnings, "ok", !f->refused);
+}
+
+// ---- the command ---------------------------------------------------------------------------------------
+
+static ruga_status judge_edges(const ruga_arguments* arguments, const facts* f) {
+    double good = 1e3 * f->model->wavelength / edges_good;
+    if (f->refused) {
+        return ruga_fail(
+            RUGA_BAD_INPUT,
+            "%s: %.2g edges per wavelength are below %g, run will refuse this: remesh with edge %.3g mm, "
+            "or set solver.allow_coarse",
+            ruga_operand(arguments), f->edges, edges_least, good);
+    }
+    if (f->edges < edges_good) {
+        ruga_warn(arguments, "%.2g edges per wavelength are below %g: remesh with edge %.3g mm", f->edges,
+                  edges_good, good);
+    }
+    return RUGA_OK;
+}
+
+static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
+    (void)exit_status;
+    ruga_status status = RUGA_OK;
+    ruga_scene scene = {0};
+    ruga_model* model = NULL;
+    int count;
+    RUGA_TRY(ruga_check_input(ruga_operand(arguments)));
+    const char* const* sets = ruga_values(arguments, "--set", &count);
+    RUGA_TRY(ruga_scene_read(ruga_operand(arguments), count, sets, &scene));
+    ruga_warn_of_scene(arguments, &scene);
+    // A mesh that is too coarse to be run is explained all the same.
+    ruga_model_def def = scene.def;
+    def.solver.allow_coarse = true;
+    RUGA_TRY_DONE(ruga_model_create(&def, &model));
+    facts f = {.scene = &scene, .model = model};
+    RUGA_TRY_DONE(derive(arguments, &f));
+    if (ruga_given(arguments, "--json")) {
+        RUGA_TRY_DONE(ruga_print_json(facts_json(&f)));
+    } else {
+        say_all(arguments, &f);
+    }
+    status = judge_edges(arguments, &f);
+done:
+    ruga_model_destroy(&model);
+    ruga_scene_clear(&scene);
+    return status;
+}
+
+const ruga_command ruga_explain_command = {
+    .name = "explain",
+    .operand = "SCENE",
+    .usage = "[--strain 5%] [--set key.path=value] [--json]",
+    .summary = "show what a scene means: every value, the wrinkles to expect, sizes and cost",
+    .about =
+        "Prints every key with its value or default, then what follows from them before anything is solved:\n"
+        "wavelength, critical strain, amplitude, edges per wavelength (8 are good, below 3 is refused), "
+        "sizes,\n"
+        "memory and time. Exit status 2 where run would refuse the scene.",
+    .example = "    ruga explain pillow.yaml --strain 5%",
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// ruga render: pictures of frames.
+#include "app/command.h"
+#include "app/console.h"
+#include "app/frames.h"
+#include "app/measure.h"
+#include "core/memory.h"
+#include "view/render.h"
+
+#include <math.h>
+
+enum { PIXELS_MAX = 16384, COLOR_CLAY = 0, COLOR_DISPLACEMENT = 1 };
+
+static const ruga_option options[] = {
+    {"--frame", "-f", "K", "the frame, counted from 0 [the last]", false},
+    {"--frames", NULL, "A:B", "frames, both ends included", false},
+    {"--width", NULL, "PIXELS", "width of the picture [1280]", false},
+    {"--height", NULL, "PIXELS", "height of the picture [960]", false},
+    {"--color", NULL, "NAME", "clay, or displacement: how far the skin stands off the interior [clay]",
+     false},
+    {"--output", "-o", "PNG", "the file to write; for several frames a name with %04d in it", false},
+    {0},
+};
+
+typedef struct job {
+    const ruga_arguments* arguments;
+    ruga_result_reader* reader;
+    const char* pattern;
+    ruga_render_def def;
+    ruga_measure* measure; // where coloured by displacement
+    double *position, *embedded;
+} job;
+
+static ruga_status read_frame(job* j, int frame) {
+    RUGA_TRY(
+        ruga_result_read_frame(j->reader, frame, NULL, j->position, j->measure ? j->embedded : NULL, NULL));
+    ruga_measured unused;
+    return j->measure ? ruga_measure_frame(j->measure, j->position, j->embedded, &unused) : RUGA_OK;
+}
+
+// One scale, symmetric about zero, for all frames of a film.
+static ruga_status choose_scale(job* j, const ruga_frame_range* range) {
+    double largest = 0;
+    for (int frame = range->first; frame <= range->last; frame++) {
+        RUGA_TRY(read_frame(j, frame));
+        const double* w = ruga_measure_displacement(j->measure);
+        for (int v = 0; v < ruga_result_mesh(j->reader)->vertex_count; v++) {
+            largest = fmax(largest, fabs(w[v]));
+        }
+    }
+    j->def.scalar = ruga_measure_displacement(j->measure);
+    j->def.scalar_max = largest > 0 ? largest : 1e-6;
+    j->def.scalar_min = -j->def.scalar_max;
+    ruga_say(j->arguments, "colours from %.3g mm to %.3g mm\n", 1e3 * j->def.scalar_min,
+             1e3 * j->def.scalar_max);
+    return RUGA_OK;
+}
+
+static ruga_status prepare(job* j, const ruga_frame_range* range) {
+    int color = COLOR_CLAY;
+    RUGA_TRY(ruga_integer(j->arguments, "--width", 16, PIXELS_MAX, &j->def.width));
+    RUGA_TRY(ruga_integer(j->arguments, "--height", 16, PIXELS_MAX, &j->def.height));
+    RUGA_TRY(ruga_option_choice(j->arguments, "--color", "clay|displacement", &color));
+    const ruga_mesh* mesh = ruga_result_mesh(j->reader);
+    const ruga_result_header* header = ruga_result_reader_header(j->reader);
+    RUGA_TRY(RUGA_NEW(j->position, 3 * (size_t)mesh->vertex_count));
+    RUGA_TRY(RUGA_NEW(j->embedded, 3 * (size_t)mesh->vertex_count));
+    if (color == COLOR_CLAY) {
+        return RUGA_OK;
+    }
+    if (!ruga_result_has_interior(j->reader)) {
+        return ruga_fail(RUGA_BAD_INPUT, "--color displacement: %s has no interior to measure from",
+                         ruga_operand(j->arguments));
+    }
+    RUGA_TRY(ruga_measure_create(mesh, header->wavelength, header->seed, &j->measure));
+    return choose_scale(j, range);
+}
+
+static ruga_status render_frame(job* j, int frame) {
+    char* path = NULL;
+    RUGA_TRY(read_frame(j, frame));
+    RUGA_TRY(ruga_frame_path(j->pattern, frame, &path));
+    ruga_status status = ruga_render_png(ruga_result_mesh(j->reader), j->position, &j->def, path);
+    if (status == RUGA_OK) {
+        ruga_say(j->arguments, "%s\n", path);
+    }
+    ruga_release(path);
+    return status;
+}
+
+static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
+    (void)exit_status;
+    ruga_status status = RUGA_OK;
+    ruga_frame_range range;
+    job j = {.arguments = arguments, .def = ruga_default_render_def()};
+    RUGA_TRY(ruga_required(arguments, "--output", &j.pattern));
+    RUGA_TRY(ruga_check_output(j.pattern));
+    RUGA_TRY(ruga_open_result(ruga_operand(arguments), &j.reader));
+    RUGA_TRY_DONE(ruga_choose_frames(arguments, ruga_result_frame_count(j.reader),
+                                     ruga_has_pattern(j.pattern), &range));
+    RUGA_TRY_DONE(ruga_check_pattern(j.pattern, &range));
+    j.def.width = 1280;
+    j.def.height = 960;
+    RUGA_TRY_DONE(prepare(&j, &range));
+    for (int frame = range.first; frame <= range.last; frame++) {
+        RUGA_TRY_DONE(render_frame(&j, frame));
+    }
+done:
+    ruga_measure_destroy(&j.measure);
+    ruga_release(j.position);
+    ruga_release(j.embedded);
+    ruga_result_reader_close(&j.reader);
+    return status;
+}
+
+const ruga_command ruga_render_command = {
+    .name = "render",
+    .operand = "RESULT",
+    .usage = "[--frame K | --frames A:B] [--width W] [--height H] [--color NAME] -o PNG_OR_PATTERN",
+    .summary = "draw frames of a result as PNG pictures",
+    .about = "Draws the skin. For several frames the file's name holds a place for the number, such as "
+             "f_%04d.png;\n"
+             "a name with such a place and no frames given means all of them.",
+    .example = "    ruga render pillow.h5 --frame 50 --color displacement -o pillow.png",
+    .options = options,
+    .run = run,
+};
