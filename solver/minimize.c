@@ -2,12 +2,17 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // What the methods of the static solve share: the residual, the certificate, the cap of a step.
+#include "core/progress.h"
 #include "solver/skin.h"
 
 #include <math.h>
 
-double ruga_skin_residual(const ruga_skin* skin, const double* projected, const ruga_skin_terms* terms) {
-    return sqrt(ruga_dot_product(skin->n, projected, projected)) / terms->force_reference;
+double ruga_skin_residual(ruga_skin* skin, const double* projected, const ruga_skin_terms* terms) {
+    double residual = sqrt(ruga_dot_product(skin->n, projected, projected)) / terms->force_reference;
+    if (residual <= skin->watched_residual && skin->watched_clock == 0) {
+        skin->watched_clock = ruga_clock();
+    }
+    return residual;
 }
 
 // The energy's curvature is known only nearby: half an edge is as far as a quadratic model may be trusted.

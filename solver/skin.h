@@ -56,6 +56,9 @@ typedef struct ruga_skin {
     double* memory;         // L-BFGS pairs and more, [work_vectors][n + m]
     double* mass;           // [V] kg
     ruga_skin_work work;
+
+    // Benchmarks: seconds on the clock when the residual first passed `watched_residual`; 0 = not yet.
+    double watched_residual, watched_clock;
 } ruga_skin;
 
 ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** skin);
@@ -114,7 +117,7 @@ ruga_status ruga_paper_minimize(ruga_skin* skin, double* x, double tolerance, ru
 
 // What they share. Residual of a projected gradient; a direction made finite and capped to half an edge; and the
 // certificate of a converged state: *done with the outcome in result, or a step off the saddle.
-double ruga_skin_residual(const ruga_skin* skin, const double* projected, const ruga_skin_terms* terms);
+double ruga_skin_residual(ruga_skin* skin, const double* projected, const ruga_skin_terms* terms);
 ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d);
 ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double* gradient, ruga_skin_result* result,
                               bool* done);
