@@ -69,8 +69,8 @@ void ruga_suggest(const char* names, const char* word, char* sentence, size_t si
         }
     }
     size_t used = strlen(sentence);
-    // Two slips, or a third of the word's letters, make it another word.
-    if (best && (least <= 1 || (size_t)least * 3 <= best_length + 1) && used < size) {
+    // Up to half of its letters wrong, a word may still be meant.
+    if (best && (least <= 1 || (size_t)least * 2 <= best_length) && used < size) {
         (void)snprintf(sentence + used, size - used, ", did you mean %.*s?", (int)best_length, best);
     }
 }

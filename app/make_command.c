@@ -15,7 +15,7 @@ static const char patterns[] = "equilateral|diagonal|alternating";
 
 static const ruga_option options[] = {
     {"--size", "-s", "X[,Y[,Z]]",
-     "outer size, m [0.5 m]. sheet: X,Y; slab, bar: X,Y,Z;\n"
+     "outer size, m [pillow, sphere: 0.5 m]. sheet: X,Y; slab, bar: X,Y,Z;\n"
      "pillow: X,Y,Z (missing Y = X, Z = 0.3 X); sphere: diameter;\n"
      "skirt: inner radius, outer radius, angle (rad or deg)",
      false},

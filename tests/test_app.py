@@ -1,0 +1,391 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The Ruga authors
+#
+# The program as a user meets it: test_app.py RUGA BUILD_DIR SOURCE_DIR [unittest arguments].
+# Results are compared with h5py where it is there, otherwise with h5diff.
+import glob
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import h5py
+except ImportError:
+    h5py = None
+
+RUGA, BUILD, SOURCE = (os.path.abspath(path) for path in sys.argv[1:4])
+
+# The smallest sheet that wrinkles: 9 edges per wavelength, 10 frames of about 50 ms.
+SCENE = """\
+mesh:       {make: {shape: sheet, size: [14 cm, 4 cm], edge: 4.2 mm}}
+skin:       {thickness: 2 mm, young: 40 MPa}
+interior:   {young: 0.5 MPa, motion: prescribed}
+lattice:    {fill: box}
+prescribed: [{time: 0 s}, {time: 0.2 s, stretch: [0.95, 1, 1]}]
+time:       {step: 20 ms, frames: 10}
+"""
+
+
+def ruga(*arguments, cwd, **more):
+    return subprocess.run([RUGA, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=120, **more)
+
+
+def datasets(path):
+    """All datasets but the timings, as bytes; None without h5py."""
+    found = {}
+
+    def visit(name, item):
+        if isinstance(item, h5py.Dataset) and "seconds_" not in name:
+            found[name] = (str(item.dtype), item.shape, item[()].tobytes() if item.dtype.kind != "O" else str(item[()]))
+
+    with h5py.File(path, "r") as file:
+        file.visititems(visit)
+    return found
+
+
+def difference(a, b):
+    """Names of datasets that differ in a bit."""
+    if h5py:
+        left, right = datasets(a), datasets(b)
+        return sorted(name for name in left.keys() | right.keys() if left.get(name) != right.get(name))
+    if not shutil.which("h5diff"):
+        return []
+    timings = ["seconds_" + part for part in ("total", "interior", "assembly", "factor", "solve", "other")]
+    exclude = [word for name in timings for word in ("--exclude-path", "/stats/" + name)]
+    done = subprocess.run(["h5diff", *exclude, a, b], capture_output=True, text=True)
+    return [line for line in done.stdout.splitlines() if line.startswith("dataset")] if done.returncode else []
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="ruga_test_")
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.scene = self.write("scene.yaml", SCENE)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return self.path(name)
+
+    def ruga(self, *arguments, status=0, **more):
+        done = ruga(*arguments, cwd=self.folder, **more)
+        self.assertEqual(done.returncode, status, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        if status in (2, 3):
+            self.assertRegex(done.stderr, r"\Aruga: .+\n\Z", arguments)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        return done
+
+    def refused(self, *arguments, saying):
+        self.assertRegex(self.ruga(*arguments, status=2).stderr, saying)
+
+    def json(self, *arguments, status=0):
+        return json.loads(self.ruga(*arguments, "--json", status=status).stdout)
+
+
+class Help(Case):
+    def test_help_teaches_a_session_that_runs(self):
+        text = self.ruga("--help").stdout
+        lines = [line[4:] for line in text.splitlines() if re.match(r"    [a-z]+: +[\[{]", line)]
+        self.write("sheet.yaml", "\n".join(lines))
+        session = [line.split()[1:] for line in text.splitlines() if line.startswith("    ruga ")]
+        self.assertEqual([words[0] for words in session], ["explain", "run", "measure"])
+        self.ruga(*session[0])
+        self.ruga(*session[1], "--frames", 1)
+        self.ruga(*session[2])
+
+    def test_every_command_explains_itself(self):
+        text = self.ruga("--help").stdout
+        for name in "make check remesh explain run measure export render".split():
+            self.assertRegex(text, rf"(?m)^    {name} ")
+            about = self.ruga(name, "--help").stdout
+            self.assertIn(f"usage: ruga {name} ", about)
+            self.assertIn("options:", about)
+            self.assertRegex(about, rf"example:\n    ruga {name} ")
+            self.assertEqual(about, self.ruga("help", name).stdout)
+
+    def test_version_names_the_libraries(self):
+        text = self.ruga("--version").stdout
+        for name in ("ruga 0.", "SuiteSparse", "CHOLMOD", "Belos", "OpenVDB", "HDF5", "CGAL", "libyaml", "UDUNITS"):
+            self.assertIn(name, text)
+        self.assertNotRegex(text, r"(?m) $")
+
+    def test_unknown_words_are_refused_with_the_nearest(self):
+        self.refused(saying="no command")
+        self.refused("exprot", saying="did you mean export")
+        self.refused("mkae", saying="did you mean make")
+        self.refused("--versoin", saying="did you mean --version")
+        self.refused("frobnicate", saying="ruga --help")
+        self.refused("make", "pilow", "-o", "a.obj", saying="did you mean pillow")
+        self.refused("run", "a.yaml", "--thread", "2", saying="did you mean --threads")
+        self.refused("run", "a.yaml", saying="-o RESULT.h5 is missing")
+        self.refused("run", "a.yaml", "b.yaml", saying="both a.yaml and b.yaml")
+        self.refused("run", "a.yaml", "-o", saying="wants a value")
+        self.refused("check", saying="no MESH")
+
+
+class Meshes(Case):
+    def test_shapes_have_the_size_asked_for(self):
+        shapes = {
+            "sheet": ("20 cm,0.1", [0.2, 0.1, 0]),
+            "slab": ("0.2,0.1,0.05", [0.2, 0.1, 0.05]),
+            "bar": ("0.3,5cm,5cm", [0.3, 0.05, 0.05]),
+            "pillow": ("20cm", [0.2, 0.2, 0.06]),
+            "sphere": ("0.1", [0.1, 0.1, 0.1]),
+            "skirt": ("10 cm,20 cm,360 deg", [0.4, 0.4, 0]),
+        }
+        for shape, (size, wanted) in shapes.items():
+            name = shape + (".ply" if shape == "slab" else ".obj")
+            self.ruga("make", shape, "--size", size, "--edge", "2cm", "-o", name)
+            flat = wanted[2] == 0
+            report = self.json("check", name, "--as", "shell" if flat else "embedded")
+            for axis in range(3):
+                self.assertAlmostEqual(report["max"][axis] - report["min"][axis], wanted[axis], delta=2e-3, msg=shape)
+            self.assertEqual(report["watertight"], not flat)
+            self.assertTrue(report["ok"])
+
+    def test_make_refuses(self):
+        self.refused("make", "sheet", "--size", "3 kg", "-o", "a.obj", saying="--size")
+        self.refused("make", "sheet", "--size", "-1", "-o", "a.obj", saying="above 0")
+        self.refused("make", "sheet", "--cells", "3", "-o", "a.obj", saying="two whole numbers")
+        self.refused("make", "sheet", "--edge", "1mm", "--cells", "3,3", "-o", "a.obj", saying="exclude")
+        self.refused("make", "sheet", "--size", "1,1", "--edge", "1 um", "-o", "a.obj", saying="vertices")
+        self.refused("make", "sheet", "-o", "a.stl", saying="obj")
+        self.refused("make", "sheet", "-o", "none/a.obj", saying="folder")
+        os.mkdir(self.path("folder.obj"))
+        self.refused("make", "sheet", "-o", "folder.obj", saying="is a folder")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["folder.obj", "scene.yaml"])
+
+    def test_check_finds_defects_with_their_places(self):
+        # A tetrahedron without its last face, with a vertex that no face uses.
+        mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 5 5 5\nf 1 3 2\nf 1 2 4\nf 2 3 4\n"
+        self.write("open.obj", mesh)
+        report = self.json("check", "open.obj", status=2)
+        keys = ("vertices triangles edges components watertight genus area volume min max edge_min edge_mean edge_max "
+                "angle_min defects errors warnings ok")
+        self.assertEqual(set(report), set(keys.split()))
+        kinds = {defect["kind"]: defect for defect in report["defects"]}
+        self.assertEqual(kinds["open_edge"]["count"], 3)
+        self.assertEqual(kinds["open_edge"]["severity"], "error")
+        self.assertEqual(kinds["unused_vertex"]["severity"], "warning")
+        edges = {tuple(sorted(place["vertices"])) for place in kinds["open_edge"]["places"]}
+        self.assertEqual(edges, {(0, 2), (0, 3), (2, 3)})
+        self.assertEqual(len(kinds["open_edge"]["places"][0]["position"]), 3)
+        self.assertEqual((report["watertight"], report["ok"], report["genus"]), (False, False, None))
+        text = self.ruga("check", "open.obj", status=2).stdout
+        self.assertRegex(text, r"open_edge \(3\)")
+        self.assertTrue(self.json("check", "open.obj", "--as", "shell")["ok"])
+        self.assertEqual(self.ruga("check", "open.obj", "--quiet", status=2).stdout, "")
+
+    def test_files_that_are_none(self):
+        os.mkdir(self.path("folder"))
+        self.refused("check", "missing.obj", saying="missing.obj cannot be read")
+        self.refused("check", "folder", saying="is a folder")
+        self.refused("run", "folder", "-o", "a.h5", saying="is a folder")
+        self.refused("measure", "missing.h5", saying="missing.h5")
+        self.refused("measure", "scene.yaml", saying="scene.yaml")
+        self.refused("explain", "missing.yaml", saying="missing.yaml")
+
+    def test_remesh_gives_the_edge_asked_for(self):
+        self.ruga("make", "pillow", "--size", "20cm", "--edge", "2cm", "-o", "a.obj")
+        self.ruga("remesh", "a.obj", "--edge", "12 mm", "-o", "b.ply")
+        report = self.json("check", "b.ply")
+        self.assertAlmostEqual(report["edge_mean"], 0.012, delta=0.0015)
+        self.refused("remesh", "a.obj", "--edge", "0", "-o", "c.obj", saying="above 0")
+        self.refused("remesh", "a.obj", "--edge", "5 m", "-o", "c.obj", saying="too long")
+        self.refused("remesh", "a.obj", "--edge", "1cm", "--group", "none", "-o", "c.obj", saying="none")
+
+
+class Scenes(Case):
+    def test_explain(self):
+        facts = self.json("explain", self.scene)
+        self.assertAlmostEqual(facts["wavelength"], 0.03754, delta=1e-4)
+        self.assertAlmostEqual(facts["critical_strain"], 0.028, delta=1e-4)
+        self.assertAlmostEqual(facts["strain"], 0.05)
+        self.assertAlmostEqual(facts["amplitude"], 2e-3 * (facts["strain"] / facts["critical_strain"] - 1) ** 0.5)
+        self.assertGreater(facts["edges_per_wavelength"], 8)
+        keys = {entry["key"]: entry for entry in facts["keys"]}
+        self.assertFalse(keys["skin.thickness"]["default"])
+        self.assertTrue(keys["skin.density"]["default"])
+        self.assertEqual(facts["degrees_of_freedom"]["skin"], 3 * facts["vertices"])
+        for key in "clusters elements superimposed memory_bytes seconds".split():
+            self.assertGreaterEqual(facts[key], 0)
+        stronger = self.json("explain", self.scene, "--strain", "10%")
+        self.assertGreater(stronger["amplitude"], facts["amplitude"])
+        self.assertRegex(self.ruga("explain", self.scene).stdout, r"skin.density +900 kg/m\^3 +\(default\)")
+
+    def test_a_coarse_mesh_is_warned_of_and_then_refused_but_explained(self):
+        coarse = ("--set", "mesh.make.edge=7 mm")
+        self.assertIn("warning: ", self.ruga("explain", self.scene, *coarse).stderr)
+        worse = ("--set", "mesh.make.edge=2 cm")
+        facts = self.json("explain", self.scene, *worse, status=2)
+        self.assertLess(facts["edges_per_wavelength"], 3)
+        self.assertFalse(facts["ok"])
+        self.refused("run", self.scene, "-o", "a.h5", *worse, saying="edges per w")
+        self.assertFalse(os.path.exists(self.path("a.h5")))
+
+    def test_broken_scenes_end_with_a_sentence(self):
+        bad = sorted(glob.glob(os.path.join(SOURCE, "tests", "scenes", "bad", "*.yaml")))
+        for path in bad:
+            with self.subTest(os.path.basename(path)):
+                done = self.ruga("run", path, "-o", "bad.h5", "--quiet", status=2)
+                self.assertIn(os.path.basename(path), done.stderr)
+                self.assertFalse(os.path.exists(self.path("bad.h5")))
+
+
+class Runs(Case):
+    def run_scene(self, name, *more, status=0):
+        self.ruga("run", self.scene, "-o", name, *more, status=status)
+        return self.path(name)
+
+    def assert_same(self, a, b):
+        self.assertEqual(difference(a, b), [])
+
+    def test_progress_results_and_their_use(self):
+        done = self.ruga("run", self.scene, "-o", "a.h5")
+        lines = [line for line in done.stderr.splitlines() if line.startswith("frame ")]
+        self.assertEqual(len(lines), 11)
+        self.assertRegex(lines[3], r"^frame 3/10  t 0\.06 s  minimum  \d+ iterations  \d+\.\d\d s .*left ")
+        self.assertIn("a.h5: frames 0 to 10", done.stdout)
+
+        m = self.json("measure", "a.h5")
+        keys = ("frame time wavelength wavelength_fft wavelength_predicted amplitude outcome residual_shell "
+                "residual_coupled constraint_residual volume energy creases")
+        self.assertEqual(set(m), set(keys.split()))
+        self.assertEqual(set(m["energy"]), set("membrane bending foundation interior kinetic external".split()))
+        self.assertEqual((m["frame"], m["outcome"], m["creases"]), (10, "minimum", []))
+        self.assertAlmostEqual(m["wavelength"], m["wavelength_predicted"], delta=0.12 * m["wavelength_predicted"])
+        self.assertGreater(m["amplitude"], 1e-3)
+        self.assertEqual(self.json("measure", "a.h5", "--frame", "0")["time"], 0)
+        self.refused("measure", "a.h5", "--frame", "11", saying="from 0 to 10")
+
+        self.check_export()
+        self.ruga("render", "a.h5", "--frames", "9:10", "--width", 64, "--height", 48, "-o", "p%d.png",
+                  "--color", "displacement")
+        for name in ("p9.png", "p10.png"):
+            with open(self.path(name), "rb") as file:
+                self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+
+    def check_export(self):
+        self.ruga("export", "a.h5", "--format", "obj", "--frames", "9:10", "-o", "f_%04d.obj")
+        self.assertTrue(os.path.exists(self.path("f_0009.obj")))
+        facts = self.json("explain", self.scene)
+        report = self.json("check", "f_0010.obj", "--as", "shell")
+        self.assertEqual((report["vertices"], report["triangles"]), (facts["vertices"], facts["triangles"]))
+        self.assertAlmostEqual(report["max"][0] - report["min"][0], 0.95 * 0.14, delta=3e-3)
+        self.ruga("export", "a.h5", "--format", "ply", "--subdivide", "1", "--unit", "mm", "-o", "last.ply")
+        fine = self.json("check", "last.ply", "--as", "shell")
+        self.assertEqual(fine["triangles"], 4 * facts["triangles"])
+        self.assertAlmostEqual(fine["max"][0], 1e3 * report["max"][0], delta=2)
+        self.refused("export", "a.h5", "--format", "obj", "--frames", "0:3", "-o", "one.obj", saying="%04d")
+        self.refused("export", "a.h5", "--format", "obj", "--frames", "3:11", "-o", "a%d.obj", saying="0:10")
+        self.refused("export", "a.h5", "--format", "obj", "--frames", "4:3", "-o", "a%d.obj", saying="range")
+        self.refused("export", "a.h5", "--format", "gltf", "-o", "a.glb", saying="not available")
+        self.refused("export", "a.h5", "--unit", "kg", "-o", "a.obj", saying="--unit")
+
+    def test_existing_results_and_resume(self):
+        whole = self.run_scene("whole.h5")
+        part = self.run_scene("part.h5", "--frames", 4)
+        self.refused("run", self.scene, "-o", part, saying="exists already")
+        self.refused("run", self.scene, "-o", part, "--resume", "--force", saying="give one")
+        self.refused("run", self.scene, "-o", part, "--resume", "--set", "skin.thickness=1.9 mm", saying="scene")
+        self.refused("run", self.scene, "-o", part, "--resume", "--set", "mesh.make.edge=4 mm", saying="mesh")
+        self.run_scene("part.h5", "--resume")
+        self.assert_same(whole, part)
+        before = os.stat(part).st_mtime_ns
+        self.assertIn("complete", self.ruga("run", self.scene, "-o", part, "--resume").stdout)
+        self.assertEqual(os.stat(part).st_mtime_ns, before)
+        fresh = self.run_scene("fresh.h5", "--resume", "--frames", 2)
+        self.run_scene("fresh.h5", "--force")
+        self.assert_same(whole, fresh)
+
+    def test_ctrl_c_ends_at_a_whole_frame_that_is_resumed_to_the_same_bits(self):
+        whole = self.run_scene("whole.h5")
+        command = [RUGA, "run", self.scene, "-o", "cut.h5"]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                              text=True) as process:
+            said = ""
+            while "frame 3/" not in said:
+                said = process.stderr.readline()
+                self.assertTrue(said, "the run ended too early")
+            process.send_signal(signal.SIGINT)
+            rest = process.stderr.read()
+        self.assertEqual(process.returncode, 130)
+        hint = re.search(r"ruga: stopped after frame (\d+) of 10; to go on: ruga (run .*--resume)\n", rest)
+        self.assertTrue(hint, rest)
+        self.assertLess(int(hint[1]), 10)
+        self.assertEqual(self.json("measure", "cut.h5")["frame"], int(hint[1]))
+        self.ruga(*hint[2].split())
+        self.assert_same(whole, self.path("cut.h5"))
+
+    def test_same_bits_for_any_number_of_threads(self):
+        first = self.run_scene("0.h5", "--threads", 1, "--frames", 6)
+        for k in range(1, 10):
+            self.assert_same(first, self.run_scene(f"{k}.h5", "--threads", 1 + k % 2, "--frames", 6, "--quiet"))
+
+    def test_not_converged_is_exit_status_1(self):
+        done = self.ruga("run", self.scene, "-o", "a.h5", "--frames", 1, "--set", "solver.tolerance=1e-30", status=1)
+        self.assertRegex(done.stdout, r"[1-9]\d* not converged|[1-9]\d* on a saddle")
+        self.ruga("run", self.scene, "-o", "a.h5", "--frames", 1, "--set", "solver.tolerance=1e-30", "--resume",
+                  status=1)
+
+    def test_quiet_and_json(self):
+        done = self.ruga("run", self.scene, "-o", "a.h5", "--frames", 1, "--quiet")
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+        summary = self.json("run", self.scene, "-o", "b.h5", "--frames", 2)
+        self.assertEqual((summary["frames"], summary["minimum"], summary["saddle"]), (2, 3, 0))
+
+    def test_output_that_cannot_be_written_is_exit_status_3(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("no /dev/full")
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([RUGA, "--help"], stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 3)
+        self.assertRegex(done.stderr, r"\Aruga: the standard output cannot be written: .+\n\Z")
+        reader, writer = os.pipe()
+        os.close(reader)
+        done = subprocess.run([RUGA, "--help"], stdout=writer, stderr=subprocess.PIPE, text=True)
+        os.close(writer)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("pipe", done.stderr)
+
+
+class Library(Case):
+    def test_all_that_the_headers_declare_is_exported_and_nothing_else(self):
+        declared = set()
+        for name in ("base.h", "types.h", "ruga.h"):
+            with open(os.path.join(SOURCE, "include", "ruga", name), encoding="utf-8") as file:
+                declared |= set(re.findall(r"RUGA_API [^;(]*?(ruga_\w+)\(", file.read()))
+        symbols = subprocess.run(["nm", "-D", "--defined-only", os.path.join(BUILD, "libruga.so")],
+                                 capture_output=True, text=True, check=True).stdout
+        self.assertEqual({line.split()[-1] for line in symbols.splitlines()}, declared)
+
+    def test_the_example_is_compiled_against_the_installed_library(self):
+        prefix = self.path("prefix")
+        subprocess.run(["cmake", "--install", BUILD, "--prefix", prefix], check=True, capture_output=True)
+        found = glob.glob(prefix + "/lib/**/ruga.pc", recursive=True)
+        self.assertEqual(len(found), 1)
+        environment = dict(os.environ, PKG_CONFIG_PATH=os.path.dirname(found[0]))
+        flags = subprocess.run(["pkg-config", "--cflags", "--libs", "ruga"], env=environment, check=True,
+                               capture_output=True, text=True).stdout.split()
+        sanitize = [flag for flag in os.environ.get("RUGA_TEST_CFLAGS", "").split() if flag]
+        subprocess.run(["cc", "-std=c17", "-Wall", "-Wextra", "-Wpedantic", "-Werror", *sanitize,
+                        os.path.join(SOURCE, "examples", "library.c"), *flags, "-o", "library"],
+                       cwd=self.folder, check=True)
+        environment["LD_LIBRARY_PATH"] = os.path.dirname(os.path.dirname(found[0]))
+        done = subprocess.run(["./library"], cwd=self.folder, env=environment, check=True, capture_output=True,
+                              text=True)
+        height = float(re.fullmatch(r"highest wrinkle: ([\d.]+) mm\n", done.stdout)[1])
+        self.assertTrue(1 < height < 6, height)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:])
