@@ -31,6 +31,8 @@ static herr_t keep_reason(hid_t stack, void* context) {
 
 void ruga_hdf5_begin(ruga_hdf5* hdf5, const char* path) {
     *hdf5 = (ruga_hdf5){.path = path};
+    // Cleaning up at exit, HDF5 1.10 crashes where a file could not be written (disk full).
+    (void)H5dont_atexit();
     (void)H5open();
     (void)H5Eget_auto2(H5E_DEFAULT, &hdf5->old_handler, &hdf5->old_context);
     (void)H5Eset_auto2(H5E_DEFAULT, keep_reason, hdf5);

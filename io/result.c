@@ -37,7 +37,8 @@ struct ruga_result {
     char* path;
     char* temporary;
     bool published; // the file stands at `path`
-    bool failed;
+    bool failed;    // no frame can follow
+    bool abandoned; // HDF5 failed to write: it must not try again
     hid_t file;
     hid_t set[RUGA_RESULT_SETS];
     int vertex_count;
@@ -239,6 +240,7 @@ static ruga_status start_file(const char* path, const ruga_result_header* header
     bool ok = fill_file(made, header, identity ? identity : header->mesh->source_vertex);
     ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "the result file cannot be written");
     ruga_hdf5_end(&hdf5);
+    made->abandoned = !ok;
     ruga_release(identity);
     return status;
 }
@@ -307,7 +309,7 @@ static ruga_status append(ruga_result* result, const ruga_result_frame* frame, c
     (void)snprintf(trouble, sizeof trouble, "frame %d cannot be written", result->frame_count);
     ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, trouble);
     ruga_hdf5_end(&hdf5);
-    result->failed = !ok;
+    result->failed = result->abandoned = !ok;
     result->frame_count += ok;
     return status;
 }
@@ -329,6 +331,16 @@ ruga_status ruga_result_append(ruga_result* result, const ruga_result_frame* fra
     return RUGA_OK;
 }
 
+static bool close_file(ruga_result* result) {
+    bool ok = true;
+    for (int set = 0; set < RUGA_RESULT_SETS; set++) {
+        ok = (result->set[set] < 0 || H5Dclose(result->set[set]) >= 0) && ok;
+    }
+    return (result->file < 0 || H5Fclose(result->file) >= 0) && ok;
+}
+
+// A file that HDF5 could not write to is left open: closing it would write again, with parts of the tables
+// missing if there is space by now, and where that fails HDF5 1.10 crashes at its next look at the file.
 ruga_status ruga_result_close(ruga_result** result) {
     ruga_result* r = *result;
     if (!r) {
@@ -336,11 +348,7 @@ ruga_status ruga_result_close(ruga_result** result) {
     }
     ruga_hdf5 hdf5;
     ruga_hdf5_begin(&hdf5, r->path ? r->path : "");
-    bool ok = true;
-    for (int set = 0; set < RUGA_RESULT_SETS; set++) {
-        ok = (r->set[set] < 0 || H5Dclose(r->set[set]) >= 0) && ok;
-    }
-    ok = (r->file < 0 || H5Fclose(r->file) >= 0) && ok;
+    bool ok = r->abandoned || close_file(r);
     ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "the file cannot be closed");
     ruga_hdf5_end(&hdf5);
     if (r->file >= 0 && !r->published) {

@@ -14,9 +14,10 @@ enum { RUGA_RESULT_FORMAT = 1 }; // attribute `format`; a reader refuses a later
 #define RUGA_RESULT_COUNTS(X) X(newton_iterations) X(linear_iterations) X(factorizations) X(substeps)
 #define RUGA_RESULT_REALS(X)                                                                                 \
     X(residual_shell)                                                                                        \
-    X(residual_coupled) X(constraint_residual) X(energy_membrane) X(energy_bending) X(energy_foundation)     \
-        X(energy_interior) X(energy_kinetic) X(energy_external) X(seconds_total) X(seconds_interior)         \
-            X(seconds_assembly) X(seconds_factor) X(seconds_solve) X(seconds_other)
+    X(residual_coupled)                                                                                      \
+    X(constraint_residual) X(energy_membrane) X(energy_bending) X(energy_foundation) X(energy_interior)      \
+        X(energy_kinetic) X(energy_external) X(seconds_total) X(seconds_interior) X(seconds_assembly)        \
+            X(seconds_factor) X(seconds_solve) X(seconds_other)
 
 typedef enum ruga_result_column {
 #define RUGA_RESULT_COLUMN(name) RUGA_RESULT_COLUMN_##name,
