@@ -163,7 +163,8 @@ def check_readme(root):
     if not os.path.exists(os.path.join(root, "examples/library.c")):
         yield "examples/library.c: is missing"
     elif blocks != [read(root, "examples/library.c")]:
-        yield "README.md: its C program is not examples/library.c, line by line"
+        yield ("README.md: its C program is not examples/library.c, line by line; "
+               "RUGA_WRITE_DOCS=1 test_house.py copies it")
 
 
 def check_links(root):
@@ -181,6 +182,14 @@ def check_links(root):
         for name in sorted(named):
             if not os.path.exists(os.path.join(root, name)):
                 yield f"{document}: names {name}, which does not exist"
+
+
+def write_readme(root):
+    """Copies the C program into README; with RUGA_WRITE_DOCS=1, as for docs/scene.md."""
+    text = read(root, "README.md")
+    program = read(root, "examples/library.c")
+    with open(os.path.join(root, "README.md"), "w", encoding="utf-8") as file:
+        file.write(re.sub(r"^```c\n.*?^```", lambda _: f"```c\n{program}```", text, flags=re.M | re.S))
 
 
 # ---- symbols -----------------------------------------------------------------------------------------------
@@ -306,6 +315,8 @@ def main():
     here = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     root = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else here
     build = sys.argv[2] if len(sys.argv) > 2 else None
+    if os.environ.get("RUGA_WRITE_DOCS"):
+        write_readme(root)
     found = [*check_rules(), *breaches(root, build)]
     for sentence in found:
         print(sentence)
