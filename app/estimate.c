@@ -4,11 +4,11 @@
 // With n unknowns of the skin and its multipliers (0.9 k to 300 k unknowns were measured):
 //   entries of the factor of [K H^T; H 0]    320 n
 //   time of a factorisation                  0.155 s (n / 12700)^1.2
-//   a frame of the static skin               8 factorisations' worth: 5 or 6 of them, 60 solves of 1/20 each
+//   a frame of the static skin               14 factorisations' worth, with its solves and substeps
 // and with N unknowns of the interior
 //   entries of its factor                    min(N^2 / 2, 60 N^(4/3))
 //   a factorisation                          entries^2 / N multiply-adds at 2e9 per second
-//   a coupled frame                          4 factorisations of the interior and 3 static skins
+//   a coupled frame                          4 factorisations of the interior and 6 static skins
 // Matrices, their indices (12 bytes an entry, twice) and 30 work vectors come on top.
 #include "app/estimate.h"
 
@@ -29,12 +29,12 @@ ruga_estimate ruga_estimate_model(const ruga_model* model) {
     };
     double n = (double)e.skin_unknowns + 3.0 * model->clusters.count, interior = (double)e.interior_unknowns;
     if (model->solves_skin) {
-        e.seconds_per_frame = 8 * 0.155 * pow(n / 12700, 1.2);
+        e.seconds_per_frame = 14 * 0.155 * pow(n / 12700, 1.2);
         e.bytes = skin_bytes(model, n);
     }
     if (model->has_interior && !ruga_model_is_prescribed(model)) {
         double entries = fmin(0.5 * interior * interior, 60 * pow(interior, 4.0 / 3));
-        e.seconds_per_frame = 3 * e.seconds_per_frame + 4 * entries * entries / interior / 2e9;
+        e.seconds_per_frame = 6 * e.seconds_per_frame + 4 * entries * entries / interior / 2e9;
         e.bytes += 8 * entries + 24 * fmin(0.5 * interior * interior, 190 * interior);
     }
     e.bytes += (double)model->lattice.vertex_count * model->lattice.nodes_per_element * 16;

@@ -12,6 +12,8 @@
 #include <math.h>
 
 enum { PIXELS_MAX = 16384, COLOR_CLAY = 0, COLOR_DISPLACEMENT = 1 };
+static const double DEGREE = 0.017453292519943295;
+static const double ELEVATION_MAX = 1.5533; // 89 deg: straight from above, no side of the picture is up
 
 static const ruga_option options[] = {
     {"--frame", "-f", "K", "the frame, counted from 0 [the last]", false},
@@ -20,6 +22,9 @@ static const ruga_option options[] = {
     {"--height", NULL, "PIXELS", "height of the picture [960]", false},
     {"--color", NULL, "NAME", "clay, or displacement: how far the skin stands off the interior [clay]",
      false},
+    {"--up", NULL, "AXIS", "the axis that points up: x, y or z [z]", false},
+    {"--azimuth", NULL, "ANGLE", "where the camera stands, turned about the up axis [-63 deg]", false},
+    {"--elevation", NULL, "ANGLE", "how far above the horizon the camera stands [34 deg]", false},
     {"--output", "-o", "PNG", "the file to write; for several frames a name with %04d in it", false},
     {0},
 };
@@ -58,8 +63,24 @@ static ruga_status choose_scale(job* j, const ruga_frame_range* range) {
     return RUGA_OK;
 }
 
+static ruga_status choose_camera(job* j) {
+    int up = 2;
+    RUGA_TRY(ruga_option_choice(j->arguments, "--up", "x|y|z", &up));
+    for (int i = 0; i < 3; i++) {
+        j->def.up[i] = i == up;
+    }
+    RUGA_TRY(ruga_quantity(j->arguments, "--azimuth", "rad", &j->def.azimuth));
+    RUGA_TRY(ruga_quantity(j->arguments, "--elevation", "rad", &j->def.elevation));
+    if (!(fabs(j->def.elevation) < ELEVATION_MAX)) {
+        return ruga_fail(RUGA_BAD_INPUT, "--elevation: %g deg is not between -89 and 89 deg",
+                         j->def.elevation / DEGREE);
+    }
+    return RUGA_OK;
+}
+
 static ruga_status prepare(job* j, const ruga_frame_range* range) {
     int color = COLOR_CLAY;
+    RUGA_TRY(choose_camera(j));
     RUGA_TRY(ruga_integer(j->arguments, "--width", 16, PIXELS_MAX, &j->def.width));
     RUGA_TRY(ruga_integer(j->arguments, "--height", 16, PIXELS_MAX, &j->def.height));
     RUGA_TRY(ruga_option_choice(j->arguments, "--color", "clay|displacement", &color));
@@ -118,7 +139,7 @@ done:
 const ruga_command ruga_render_command = {
     .name = "render",
     .operand = "RESULT",
-    .usage = "[--frame K | --frames A:B] [--width W] [--height H] [--color NAME] -o PNG_OR_PATTERN",
+    .usage = "[--frame K | --frames A:B] [--width W] [--height H] [--color NAME] [--up AXIS] -o PNG_OR_PATTERN",
     .summary = "draw frames of a result as PNG pictures",
     .about = "Draws the skin. For several frames the file's name holds a place for the number, such as "
              "f_%04d.png;\n"
