@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 
 #include "core/status.h"
+#include "ruga/ruga.h"
 
 #include <omp.h>
 #include <stdlib.h>

@@ -6,10 +6,8 @@
 #ifndef RUGA_CORE_PARALLEL_H
 #define RUGA_CORE_PARALLEL_H
 
-// Threads used from now on by this process; 0 = RUGA_THREADS of the environment, or all cores. Never
-// changes a result.
-// Declared for users in ruga/ruga.h.
-void ruga_set_threads(int count);
+// Threads in use: what ruga_set_threads (ruga/ruga.h) said, or else RUGA_THREADS of the environment, or all
+// cores. Never changes a result.
 int ruga_threads(void);
 
 // Calls body(begin, end, chunk, context) for consecutive ranges [begin, end) of at most `chunk_size` that

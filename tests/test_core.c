@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/sparse.h"
+#include "ruga/ruga.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -250,11 +250,23 @@ static void trace(const picture* p, const double d[3], ruga_random* random, doub
         ruga_add_scaled(b[k], p->position + 3 * (size_t)t[k], x);
     }
     ruga_normalize(n);
-    bool back = ruga_dot(n, d) > 0;
+    double flat[3] = {(double)hit.hit.Ng_x, (double)hit.hit.Ng_y, (double)hit.hit.Ng_z};
+    ruga_normalize(flat);
+    bool back = ruga_dot(flat, d) > 0;
     for (int i = 0; i < 3; i++) {
-        n[i] = back ? -n[i] : n[i];
-        x[i] += 1e-4 * p->size * n[i];
+        flat[i] = back ? -flat[i] : flat[i];
+        x[i] += 3e-4 * p->size * flat[i];
     }
+    // Across a sharp rim the smooth normal may point into the surface: it is turned to the face's side.
+    double side = ruga_dot(n, flat);
+    for (int i = 0; i < 3; i++) {
+        n[i] = side < 0 ? -n[i] : n[i];
+    }
+    side = fabs(side);
+    for (int i = 0; i < 3 && side < 0.5; i++) {
+        n[i] = side / 0.5 * n[i] + (1 - side / 0.5) * flat[i];
+    }
+    ruga_normalize(n);
     surface_color(p, t, b, color);
     shade(p, x, n, color, random, out);
 }
