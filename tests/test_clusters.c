@@ -6,6 +6,7 @@
 #include "constraints/laplacian.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "ruga/ruga.h"
 #include "core/random.h"
 #include "core/vec3.h"
 #include "mesh/make.h"

@@ -3,6 +3,7 @@
 #include "tests/check.h"
 
 #include "core/parallel.h"
+#include "ruga/ruga.h"
 #include "core/vec3.h"
 #include "lattice/corotational.h"
 #include "lattice/elasticity.h"

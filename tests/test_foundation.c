@@ -5,6 +5,7 @@
 #include "constraints/foundation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "ruga/ruga.h"
 #include "core/random.h"
 #include "core/vec3.h"
 #include "mesh/make.h"

@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "ruga/ruga.h"
 #include "core/random.h"
 #include "core/vec3.h"
 #include "lattice/assemble.h"

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "ruga/ruga.h"
 #include "core/random.h"
 #include "solver/belos_shim.h"
 #include "solver/linear.h"

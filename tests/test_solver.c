@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "ruga/ruga.h"
 #include "tests/dense.h"
 #include "tests/small_scene.h"
 
