@@ -6,12 +6,14 @@
 import glob
 import json
 import os
+import random
 import re
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 try:
@@ -29,6 +31,19 @@ interior:   {young: 0.5 MPa, motion: prescribed}
 lattice:    {fill: box}
 prescribed: [{time: 0 s}, {time: 0.2 s, stretch: [0.95, 1, 1]}]
 time:       {step: 20 ms, frames: 10}
+"""
+
+# Interior and skin move each other, with inertia.
+COUPLED = """\
+mesh:     {make: {shape: slab, size: [12 cm, 5 cm, 4 cm], edge: 9 mm}}
+skin:     {thickness: 2 mm, young: 10 MPa}
+interior: {young: 50 kPa, density: 100 kg/m^3, damping: 5 1/s}
+lattice:  {cells: 3}
+time:     {step: 10 ms, frames: 8}
+gravity:  [0, 0, -9.81]
+handles:
+  - {region: {plane: {center: [-6 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}
+  - {region: {plane: {center: [6 cm, 0, 0], normal: [1, 0, 0]}}, move: {translate: [-6 mm, 0, 0]}, during: [0 s, 80 ms]}
 """
 
 
@@ -325,6 +340,35 @@ class Runs(Case):
         self.assertEqual(self.json("measure", "cut.h5")["frame"], int(hint[1]))
         self.ruga(*hint[2].split())
         self.assert_same(whole, self.path("cut.h5"))
+
+    def kill_and_resume(self, scene, kills, whole):
+        """SIGKILL at seeded random moments of runs that each resume the one before."""
+        random_numbers, cut, frames = random.Random(7), self.path("killed.h5"), 0
+        for _ in range(kills):
+            with subprocess.Popen([RUGA, "run", scene, "-o", cut, "--resume", "--quiet"], cwd=self.folder) as process:
+                time.sleep(random_numbers.uniform(0.02, 0.9))
+                process.kill()
+            if h5py and os.path.exists(cut):
+                try:
+                    file = h5py.File(cut, "r", swmr=True)
+                except (OSError, ValueError):
+                    file = h5py.File(cut, "r")
+                with file:
+                    now = len(file["/frames/time"])
+                    self.assertGreaterEqual(now, max(frames, 1))
+                    self.assertGreaterEqual(len(file["/shell/position"]), now)
+                    frames = now
+        self.ruga("run", scene, "-o", cut, "--resume")
+        self.assert_same(whole, cut)
+        os.remove(cut)
+
+    def test_twenty_kills_cost_no_whole_frame_and_no_bit(self):
+        self.kill_and_resume(self.scene, 20, self.run_scene("whole.h5"))
+
+    def test_kills_of_a_coupled_run_cost_no_bit(self):
+        scene = self.write("coupled.yaml", COUPLED)
+        self.ruga("run", scene, "-o", "coupled.h5")
+        self.kill_and_resume(scene, 10, self.path("coupled.h5"))
 
     def test_same_bits_for_any_number_of_threads(self):
         first = self.run_scene("0.h5", "--threads", 1, "--frames", 6)
