@@ -275,7 +275,9 @@ static ruga_status step_prescribed(ruga_state* state, ruga_report* report) {
     double begin = state->time, dt = model->step;
     ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, begin + dt, state->q);
     ruga_lattice_embed(&model->lattice, state->q, state->next_embedded);
-    int parts = count_substeps(state, state->embedded, state->next_embedded);
+    // The published method takes the step as it comes.
+    bool published = model->solver.method == RUGA_METHOD_PAPER;
+    int parts = published ? 1 : count_substeps(state, state->embedded, state->next_embedded);
     report->substeps = parts;
     set_damping(state, dt / parts);
     for (int k = 1; k <= parts; k++) {
