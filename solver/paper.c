@@ -6,6 +6,7 @@
 // from the last frame's x, each system solved by MINRES without a preconditioner, and Armijo's rule on |F| with the
 // published parabola. What the paper leaves open is fixed by the issue: relative tolerance 1e-3 and at most 4,000
 // MINRES iterations, at most 50 Newton steps. Nothing here avoids saddles; the outcome tells.
+#include "core/progress.h"
 #include "solver/belos_shim.h"
 #include "solver/skin.h"
 
@@ -123,6 +124,7 @@ ruga_status ruga_paper_minimize(ruga_skin* skin, double* x, double tolerance, ru
         if ((result->residual <= tolerance && feasible) || k == NEWTON_MAX || step == 0) {
             break;
         }
+        RUGA_TRY(ruga_progress("static solve", (double)k / NEWTON_MAX));
         RUGA_TRY(ruga_skin_assemble(skin, x, 0));
         memset(solution, 0, (size_t)(skin->n + skin->m) * sizeof *solution);
         ruga_minres_report report;
