@@ -26,6 +26,7 @@ static void scene_bar(small_scene* s, double dx, int frames, double edge) {
     s->def.interior.young = 0.1e6;
     s->def.interior.motion = RUGA_INTERIOR_QUASISTATIC;
     s->def.lattice.cells = 6;
+    s->def.solver.allow_coarse = true; // where nothing wrinkles
     for (int i = 0; i < 2; i++) {
         double side = i ? 1 : -1;
         s->handle[i].region =
@@ -252,7 +253,7 @@ static void a_dynamic_run_goes_on_with_the_same_bits(void** state) {
 static void a_quasistatic_run_goes_on_with_the_same_bits(void** state) {
     (void)state;
     small_scene s;
-    scene_bar(&s, -8e-3, 4, 8e-3);
+    scene_bar(&s, -8e-3, 4, 13e-3);
     scene_build(&s);
     check_restart(&s, 2, 4);
     scene_free(&s);
@@ -340,7 +341,7 @@ static void a_body_recovers_from_inversion_and_collapse(void** state) {
     (void)state;
     for (int collapsed = 0; collapsed < 2; collapsed++) {
         small_scene s;
-        scene_bar(&s, 0, 1, 20e-3);
+        scene_bar(&s, 0, 1, 13e-3);
         scene_build(&s);
         int held = 0;
         for (int i = 2; i < 3 * s.model->lattice.node_count; i += 3) {

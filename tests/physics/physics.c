@@ -42,7 +42,7 @@ static void add_line(suite* s, const run* r, const char* quantity, double value,
     if (judged) {
         (void)snprintf(range, sizeof range, "%.3f +- %.0f %%", wanted, 100 * tolerance);
     }
-    printf("  %-40s %-32s %10.4g  %-18s %s\n", r->name, quantity, value, range, verdict);
+    printf("  %-44s %-32s %10.4g  %-18s %s\n", r->name, quantity, value, range, verdict);
     (void)fflush(stdout);
     (void)fprintf(s->lines,
                   "%s\n  {\"case\": \"%s\", \"quantity\": \"%s\", \"value\": %.9g, \"wanted\": %.9g, "
@@ -232,27 +232,31 @@ static ruga_status run_spectral(suite* s) {
     return run_without_foundation(s, true);
 }
 
-// The baseline, as published; a frame that takes longer than a minute is stopped and measured as it stands.
+// The baseline, as published: from rest to one strain, so that a solve that is stopped does not hide the
+// others. What takes longer than two minutes is stopped and measured as it stands (the strain along tells how
+// far it came).
 static ruga_status run_paper(suite* s) {
-    for (int ratio = 2; ratio <= 4; ratio++) {
+    static const double strain[] = {0.4, 1.2, 2};
+    for (int k = 0; k < 9; k++) {
         run r;
-        start_run(&r, "paper", pow(10, ratio), 0.3, 1);
+        start_run(&r, "paper", pow(10, 2 + k / 3), 0.3, 1);
+        size_t length = strlen(r.name);
+        (void)snprintf(r.name + length, sizeof r.name - length, " %.1f eps_c", strain[k % 3]);
         r.def.foundation = false;
         r.def.paper_rule = r.def.paper_method = true;
-        r.def.frame_limit = 60;
-        add_strains(&r, 4, (const double[]){0.4, 0.8, 1.2, 2});
+        r.def.frame_limit = 120;
+        add_strains(&r, 1, &strain[k % 3]);
         RUGA_TRY(do_run(s, &r));
-        add_minima(s, &r, 0);
-        for (int k = 0; k < r.def.count && r.frame[k].strain > 0; k++) {
-            const sheet_frame* f = &r.frame[k];
-            char quantity[64];
-            (void)snprintf(quantity, sizeof quantity, "%.1f eps_c (%s): residual", r.strain[k],
-                           outcome_name(f));
-            add_line(s, &r, quantity, f->report.residual_shell, 0, 0);
-            add_line(s, &r, "  wavelength_fft / eq. 3", f->wavelength_fft / r.wavelength, 0, 0);
-            add_line(s, &r, "  amplitude / h", f->amplitude / r.thickness, 0, 0);
-            add_line(s, &r, "  seconds", f->report.seconds_total, 0, 0);
-        }
+        const sheet_frame* f = &r.frame[0];
+        char quantity[64];
+        (void)snprintf(quantity, sizeof quantity, "residual (%s)", outcome_name(f));
+        add_line(s, &r, quantity, f->report.residual_shell, 0, 0);
+        add_line(s, &r, "constraint residual", f->report.constraint_residual, 0, 0);
+        add_line(s, &r, "Newton steps", f->report.newton_iterations, 0, 0);
+        add_line(s, &r, "MINRES iterations", f->report.linear_iterations, 0, 0);
+        add_line(s, &r, "strain along / eps_c", f->skin_strain / r.critical, 0, 0);
+        add_line(s, &r, "wavelength_fft / eq. 3", f->wavelength_fft / r.wavelength, 0, 0);
+        add_line(s, &r, "amplitude / h", f->amplitude / r.thickness, 0, 0);
     }
     return RUGA_OK;
 }
