@@ -27,8 +27,8 @@ ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d) {
     return RUGA_OK;
 }
 
-ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double* gradient, ruga_skin_result* result,
-                              bool* done) {
+ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double tolerance, double* target,
+                              double* gradient, ruga_skin_result* result, bool* done) {
     *done = true;
     if (!certify) {
         result->outcome = RUGA_OUTCOME_MINIMUM;
@@ -41,10 +41,11 @@ ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double* 
     }
     bool moved;
     RUGA_TRY(ruga_negative_curvature_step(skin, x, &result->terms, gradient, &moved));
-    if (!moved) {
+    if (!moved && *target <= 2e-3 * tolerance) {
         result->outcome = RUGA_OUTCOME_SADDLE;
         return RUGA_OK;
     }
+    *target *= moved ? 1 : 0.1;
     *done = false;
     return RUGA_OK;
 }

@@ -53,6 +53,13 @@ ruga_status ruga_negative_curvature_step(ruga_skin* skin, double* x, ruga_skin_t
     random_direction(skin, skin->work.iterations, v);
     RUGA_TRY(find_direction(skin, v, image, &found));
     if (!found) {
+        // A mode whose curvature is tiny stands out only under a shift as small.
+        RUGA_TRY(ruga_skin_refactor(skin, 0.01 * skin->shift_memory));
+        if (skin->factor_right) {
+            RUGA_TRY(find_direction(skin, v, image, &found));
+        }
+    }
+    if (!found) {
         return RUGA_OK;
     }
     double sign = ruga_dot_product(skin->n, gradient, v) > 0 ? -1 : 1;

@@ -84,14 +84,15 @@ ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, b
                                  ruga_skin_result* result) {
     double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
     double *d = ruga_skin_vector(skin, DIRECTION), step;
+    double target = tolerance;
     result->outcome = RUGA_OUTCOME_NOT_CONVERGED;
     RUGA_TRY(ruga_skin_energy(skin, x, &result->terms, gradient));
     for (int k = 0; k < MAX_ITERATIONS; k++, skin->work.iterations++) {
         bool stuck = false, shifted;
         RUGA_TRY(ruga_skin_project(skin, gradient, projected));
         result->residual = ruga_skin_residual(skin, projected, &result->terms);
-        if (result->residual <= tolerance) {
-            RUGA_TRY(ruga_skin_certify(skin, x, certify, gradient, result, &stuck));
+        if (result->residual <= target) {
+            RUGA_TRY(ruga_skin_certify(skin, x, certify, tolerance, &target, gradient, result, &stuck));
             if (stuck) {
                 return RUGA_OK;
             }

@@ -100,6 +100,7 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
     memory m = {.gamma = 1, .newest = -1};
     double score = 0, step, move;
     int failures = 0;
+    double target = tolerance;
     result->outcome = RUGA_OUTCOME_NOT_CONVERGED;
     RUGA_TRY(ruga_skin_energy(skin, x, &result->terms, gradient));
     if (!skin->factor_right) {
@@ -108,9 +109,9 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
     for (int k = 0; k < MAX_ITERATIONS; k++, skin->work.iterations++) {
         RUGA_TRY(ruga_skin_project(skin, gradient, projected));
         result->residual = ruga_skin_residual(skin, projected, &result->terms);
-        if (result->residual <= tolerance) {
+        if (result->residual <= target) {
             bool done;
-            RUGA_TRY(ruga_skin_certify(skin, x, certify, gradient, result, &done));
+            RUGA_TRY(ruga_skin_certify(skin, x, certify, tolerance, &target, gradient, result, &done));
             if (done) {
                 return RUGA_OK;
             }

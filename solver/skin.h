@@ -119,8 +119,10 @@ ruga_status ruga_paper_minimize(ruga_skin* skin, double* x, double tolerance, ru
 // certificate of a converged state: *done with the outcome in result, or a step off the saddle.
 double ruga_skin_residual(ruga_skin* skin, const double* projected, const ruga_skin_terms* terms);
 ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d);
-ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double* gradient, ruga_skin_result* result,
-                              bool* done);
+// A saddle so shallow that no step leaves it is approached more closely first: *target, the residual that counts as
+// converged, is lowered.
+ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double tolerance, double* target,
+                              double* gradient, ruga_skin_result* result, bool* done);
 
 // Line search along d from x (energy and gradient there given): Armijo's rule on the energy with quadratic
 // interpolation; a full step of negative curvature is doubled while the energy falls. On success x, terms and gradient are

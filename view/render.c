@@ -26,7 +26,7 @@ typedef struct picture {
     const ruga_mesh* mesh;
     const ruga_render_def* def;
     const double* position;
-    double* normal;
+    double* normal; // [F][3][3] at the corners of each face
     RTCDevice device;
     RTCScene scene;
     double eye[3], right[3], up[3], forward[3]; // forward of unit length, right and up scaled by the half picture
@@ -79,22 +79,81 @@ static ruga_status build_scene(picture* p) {
                : ruga_fail(RUGA_LIBRARY, "Embree could not build the scene of %d triangles", triangles);
 }
 
-// Moves the eye back until every vertex is inside the wanted part of the picture.
-static void frame_object(picture* p, const double center[3], double half_angle) {
+// Moves the eye back until every vertex is inside the wanted part of the picture, and sideways until what is
+// seen stands in the middle.
+static void frame_object(picture* p, double center[3], double half_angle) {
     const ruga_render_def* def = p->def;
-    double aspect = (double)def->width / def->height, t = tan(half_angle) * def->fit, distance = 0;
-    for (int v = 0; v < p->mesh->vertex_count; v++) {
-        double d[3];
-        ruga_subtract(p->position + 3 * (size_t)v, center, d);
-        double z = ruga_dot(d, p->forward);
-        distance = fmax(distance, fabs(ruga_dot(d, p->right)) / (t * aspect) - z);
-        distance = fmax(distance, fabs(ruga_dot(d, p->up)) / t - z);
+    double aspect = (double)def->width / def->height, t = tan(half_angle), distance = 0;
+    for (int pass = 0; pass < 4; pass++) {
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        distance = 0;
+        for (int v = 0; v < p->mesh->vertex_count; v++) {
+            double d[3];
+            ruga_subtract(p->position + 3 * (size_t)v, center, d);
+            double z = ruga_dot(d, p->forward);
+            distance = fmax(distance, fabs(ruga_dot(d, p->right)) / (t * def->fit * aspect) - z);
+            distance = fmax(distance, fabs(ruga_dot(d, p->up)) / (t * def->fit) - z);
+        }
+        for (int v = 0; v < p->mesh->vertex_count; v++) {
+            double d[3];
+            ruga_subtract(p->position + 3 * (size_t)v, center, d);
+            double z = distance + ruga_dot(d, p->forward);
+            double seen[2] = {ruga_dot(d, p->right) / z, ruga_dot(d, p->up) / z};
+            for (int i = 0; i < 2; i++) {
+                low[i] = fmin(low[i], seen[i]);
+                high[i] = fmax(high[i], seen[i]);
+            }
+        }
+        ruga_add_scaled(0.5 * distance * (low[0] + high[0]), p->right, center);
+        ruga_add_scaled(0.5 * distance * (low[1] + high[1]), p->up, center);
     }
     for (int i = 0; i < 3; i++) {
         p->eye[i] = center[i] - distance * p->forward[i];
-        p->right[i] *= tan(half_angle) * aspect;
-        p->up[i] *= tan(half_angle);
+        p->right[i] *= t * aspect;
+        p->up[i] *= t;
     }
+}
+
+// Corner normals: the mean of the faces around the vertex that are within 50 degrees of the corner's own, so that sharp
+// rims stay sharp and all else is smooth.
+static ruga_status build_normals(picture* p) {
+    ruga_status status = RUGA_OK;
+    int vertices = p->mesh->vertex_count, triangles = p->mesh->triangle_count, *start = NULL, *face = NULL;
+    const int* t = p->mesh->triangle;
+    double* flat = NULL;
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(start, vertices + 2));
+    RUGA_TRY_DONE(RUGA_NEW(face, 3 * (size_t)triangles));
+    RUGA_TRY_DONE(RUGA_NEW(flat, 3 * (size_t)triangles));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(p->normal, 9 * (size_t)triangles));
+    for (int c = 0; c < 3 * triangles; c++) {
+        start[t[c] + 2]++;
+    }
+    for (int v = 0; v < vertices; v++) {
+        start[v + 2] += start[v + 1];
+    }
+    for (int c = 0; c < 3 * triangles; c++) {
+        face[start[t[c] + 1]++] = c / 3;
+    }
+    for (int f = 0; f < triangles; f++) {
+        ruga_triangle_normal(p->position + 3 * (size_t)t[3 * f], p->position + 3 * (size_t)t[3 * f + 1],
+                             p->position + 3 * (size_t)t[3 * f + 2], flat + 3 * (size_t)f);
+    }
+    for (int c = 0; c < 3 * triangles; c++) {
+        const double* own = flat + 3 * (size_t)(c / 3);
+        double* n = p->normal + 3 * (size_t)c;
+        for (int k = start[t[c]]; k < start[t[c] + 1]; k++) {
+            const double* other = flat + 3 * (size_t)face[k];
+            if (ruga_dot(own, other) >= cos(50 * RUGA_PI / 180) * ruga_norm(own) * ruga_norm(other)) {
+                ruga_add_scaled(1, other, n);
+            }
+        }
+        ruga_normalize(n);
+    }
+done:
+    ruga_release(start);
+    ruga_release(face);
+    ruga_release(flat);
+    return status;
 }
 
 static void set_camera(picture* p) {
@@ -246,7 +305,7 @@ static void trace(const picture* p, const double d[3], ruga_random* random, doub
     const int* t = p->mesh->triangle + 3 * (size_t)hit.hit.primID;
     double b[3] = {1 - (double)hit.hit.u - (double)hit.hit.v, hit.hit.u, hit.hit.v}, n[3] = {0}, x[3] = {0}, color[3];
     for (int k = 0; k < 3; k++) {
-        ruga_add_scaled(b[k], p->normal + 3 * (size_t)t[k], n);
+        ruga_add_scaled(b[k], p->normal + 9 * (size_t)hit.hit.primID + 3 * (size_t)k, n);
         ruga_add_scaled(b[k], p->position + 3 * (size_t)t[k], x);
     }
     ruga_normalize(n);
@@ -312,8 +371,7 @@ ruga_status ruga_render(const ruga_mesh* mesh, const double* position, const rug
             return ruga_fail(RUGA_BAD_INPUT, "vertex %d has a position that is not finite", i / 3);
         }
     }
-    RUGA_TRY_DONE(RUGA_NEW(p.normal, 3 * (size_t)mesh->vertex_count));
-    ruga_mesh_vertex_normals(mesh, position, p.normal);
+    RUGA_TRY_DONE(build_normals(&p));
     RUGA_TRY_DONE(build_scene(&p));
     set_camera(&p);
     ruga_parallel_for(def->height, 8, render_rows, &p);
