@@ -361,6 +361,7 @@ static ruga_status skin_response(ruga_interior* in, const double* dq, double* mo
             u[i] -= move[i];
         }
         ruga_clusters_apply(&in->model->clusters, u, right + skin->n);
+        ruga_skin_clear_void_rows(skin, right + skin->n);
         RUGA_TRY(ruga_skin_solve_system(skin, right, skin->left));
         for (int i = 0; i < skin->n; i++) {
             move[i] += skin->left[i];

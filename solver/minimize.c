@@ -66,5 +66,5 @@ ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, boo
         RUGA_TRY(ruga_quasi_newton_minimize(skin, x, tolerance, certify, result));
         break;
     }
-    return RUGA_OK;
+    return skin->near_dependent ? ruga_skin_restore(skin, x) : RUGA_OK;
 }

@@ -28,6 +28,7 @@ static void add_constraint_force(const system_* sys, const double* l, double* ou
     for (int r = 0; r < skin->m; r++) {
         scaled[r] = sys->gamma * l[r];
     }
+    ruga_skin_clear_void_rows(skin, scaled);
     ruga_clusters_apply_transpose(&skin->model->clusters, scaled, out);
 }
 
@@ -48,6 +49,7 @@ static ruga_status apply_matrix(const double* x, double* y, void* context) {
     for (int r = 0; r < skin->m; r++) {
         y[skin->n + r] *= sys->gamma;
     }
+    ruga_skin_clear_void_rows(skin, y + skin->n);
     return RUGA_OK;
 }
 
@@ -70,6 +72,7 @@ static ruga_status evaluate(const system_* sys, const double* x, const double* l
     for (int r = 0; r < skin->m; r++) {
         f[n + r] *= sys->gamma;
     }
+    ruga_skin_clear_void_rows(skin, f + n);
     return RUGA_OK;
 }
 

@@ -77,16 +77,31 @@ static ruga_status transpose_clusters(const ruga_clusters* clusters, int vertice
     return RUGA_OK;
 }
 
-// A row whose vertices are all held says nothing: its multiplier gets a unit diagonal, negative so that the
-// inertia stays (n, m, 0).
-static bool row_is_void(const ruga_skin* skin, int row, int axis) {
+// A row without a free component says nothing. Where the skin alone is held, away from the interior, a row with less
+// than a quarter of its weight free (in the root of the sum of squares) would move these few by many times what it
+// corrects. Both are left out; the multiplier gets a unit diagonal, negative so that the inertia stays (n, m, 0).
+static ruga_status find_void_rows(ruga_skin* skin) {
     const ruga_clusters* c = &skin->model->clusters;
-    for (int k = c->start[row]; k < c->start[row + 1]; k++) {
-        if (!held(skin, 3 * c->vertex[k] + axis)) {
-            return false;
+    RUGA_TRY(RUGA_NEW_ZERO(skin->row_void, skin->m));
+    for (int r = 0; r < skin->m && skin->model->any_skin_held; r++) {
+        double all = 0, free = 0;
+        bool torn = false;
+        for (int k = c->start[r / 3]; k < c->start[r / 3 + 1]; k++) {
+            int i = 3 * c->vertex[k] + r % 3, handle = skin->model->skin_handle[i];
+            double weight = c->weight[k] * c->weight[k];
+            all += weight;
+            free += handle < 0 ? weight : 0;
+            torn = torn || (handle >= 0 && skin->model->handles[handle].hold == RUGA_HOLD_SKIN);
         }
+        skin->row_void[r] = free <= (torn ? 0.0625 * all : 0);
     }
-    return true;
+    return RUGA_OK;
+}
+
+void ruga_skin_clear_void_rows(const ruga_skin* skin, double* y) {
+    for (int r = 0; r < skin->m && skin->model->any_skin_held; r++) {
+        y[r] = skin->row_void[r] ? 0 : y[r];
+    }
 }
 
 static ruga_status create_kkt(ruga_skin* skin, const transpose* t) {
@@ -113,13 +128,14 @@ static ruga_status create_kkt(ruga_skin* skin, const transpose* t) {
         int v = j / 3, axis = j % 3;
         for (int p = t->start[v]; p < t->start[v + 1]; p++) {
             kkt->index[out] = n + 3 * t->row[p] + axis;
-            kkt->value[out++] = held(skin, j) ? 0 : t->weight[p];
+            bool out_of_play = held(skin, j) || skin->row_void[3 * t->row[p] + axis];
+            kkt->value[out++] = out_of_play ? 0 : t->weight[p];
         }
     }
     for (int r = 0; r < m; r++) {
         kkt->start[n + r] = out;
         kkt->index[out] = n + r;
-        kkt->value[out++] = row_is_void(skin, r / 3, r % 3) ? -1 : 0;
+        kkt->value[out++] = skin->row_void[r] ? -1 : 0;
     }
     kkt->start[n + m] = out;
     return RUGA_OK;
@@ -155,7 +171,21 @@ static bool axes_are_held_alike(const ruga_model* model) {
     return true;
 }
 
-// Adds 1e-12 of the diagonal: overlapping Gaussians make H H^T nearly singular.
+// Overlapping Gaussians make H H^T nearly singular. Where it has an eigenvalue below 1e-7 of its diagonal (clusters
+// as many as vertices, or few free vertices between held ones) the rows are called near dependent.
+static ruga_status factor_gram(ruga_skin* skin, ruga_sparse* gram, int axis) {
+    ruga_factor_info info;
+    for (int r = 0; r < gram->rows; r++) {
+        gram->value[gram->start[r]] *= 1 - 1e-7;
+    }
+    RUGA_TRY(ruga_factor_numeric(skin->gram[axis], gram->value, &info));
+    skin->near_dependent = skin->near_dependent || info.negative > 0 || info.zero > 0;
+    for (int r = 0; r < gram->rows; r++) {
+        gram->value[gram->start[r]] *= (1 + (skin->near_dependent ? 1e-9 : 1e-12)) / (1 - 1e-7);
+    }
+    return ruga_factor_numeric(skin->gram[axis], gram->value, &info);
+}
+
 static ruga_status create_gram(ruga_skin* skin, const transpose* t, int axis) {
     ruga_status status = RUGA_OK;
     int vertices = skin->n / 3;
@@ -179,17 +209,18 @@ static ruga_status create_gram(ruga_skin* skin, const transpose* t, int axis) {
     for (int v = 0; v < vertices; v++) {
         for (int p = t->start[v]; p < t->start[v + 1] && !held(skin, 3 * v + axis); p++) {
             for (int q = t->start[v]; q <= p; q++) {
-                gram.value[ruga_sparse_find(&gram, t->row[p], t->row[q])] += t->weight[p] * t->weight[q];
+                if (!skin->row_void[3 * t->row[p] + axis] && !skin->row_void[3 * t->row[q] + axis]) {
+                    gram.value[ruga_sparse_find(&gram, t->row[p], t->row[q])] += t->weight[p] * t->weight[q];
+                }
             }
         }
     }
     for (int r = 0; r < skin->m / 3; r++) {
         double* diagonal = gram.value + gram.start[r];
-        *diagonal = *diagonal > 0 ? *diagonal * (1 + 1e-12) : 1;
+        *diagonal = *diagonal > 0 ? *diagonal : 1;
     }
     RUGA_TRY_DONE(ruga_factor_create(RUGA_FACTOR_LDL, &gram, gram.rows, NULL, NULL, &skin->gram[axis]));
-    ruga_factor_info info;
-    RUGA_TRY_DONE(ruga_factor_numeric(skin->gram[axis], gram.value, &info));
+    RUGA_TRY_DONE(factor_gram(skin, &gram, axis));
 done:
     ruga_release(pair);
     ruga_sparse_clear(&gram);
@@ -234,6 +265,7 @@ ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** out) {
     RUGA_TRY_DONE(transpose_clusters(&model->clusters, skin->n / 3, &t));
     RUGA_TRY_DONE(create_vectors(skin));
     if (model->solves_skin) {
+        RUGA_TRY_DONE(find_void_rows(skin));
         RUGA_TRY_DONE(create_kkt(skin, &t));
         RUGA_TRY_DONE(create_factor(skin));
         RUGA_TRY_DONE(create_grams(skin, &t));
@@ -262,7 +294,7 @@ void ruga_skin_destroy(ruga_skin** skin_pointer) {
     for (int axis = 0; axis < 3; axis++) {
         ruga_factor_destroy(&skin->gram[axis]);
     }
-    void* const owned[] = {skin->column_shift, skin->foundation_slot, skin->stiffness,
+    void* const owned[] = {skin->row_void,     skin->column_shift, skin->foundation_slot, skin->stiffness,
                            skin->target,       skin->displacement,    skin->right,
                            skin->left,         skin->multiplier,      skin->trial,
                            skin->trial_gradient, skin->memory,        skin->mass};
@@ -336,6 +368,12 @@ static void fill_kkt(ruga_skin* skin, double shift) {
     double mean = 0;
     for (int j = 0; j < skin->n; j++) {
         mean += fabs(skin->stiffness[k->start[j]]) / skin->n;
+    }
+    // Dependent rows leave their multipliers open: a compliance of 1e-9 of the skin's own closes them, and
+    // ruga_skin_restore takes out what it lets through.
+    for (int r = skin->n; r < skin->n + skin->m && skin->near_dependent; r++) {
+        double* diagonal = skin->kkt.value + skin->kkt.start[r];
+        *diagonal = skin->row_void[r - skin->n] ? -1 : -1e-9 / mean;
     }
     for (int j = 0; j < skin->n; j++) {
         double* column = skin->kkt.value + k->start[j] + skin->column_shift[j];
@@ -492,6 +530,7 @@ ruga_status ruga_skin_project(ruga_skin* skin, const double* gradient, double* o
     }
     double* y = skin->left;
     ruga_clusters_apply(&skin->model->clusters, out, y);
+    ruga_skin_clear_void_rows(skin, y);
     RUGA_TRY(solve_gram(skin, y, skin->multiplier));
     for (int r = 0; r < skin->m; r++) {
         skin->multiplier[r] = -skin->multiplier[r];
@@ -512,6 +551,7 @@ double ruga_skin_constraint_residual(ruga_skin* skin, const double* x) {
     for (int r = 0; r < skin->m; r++) {
         hx[r] -= hb[r];
     }
+    ruga_skin_clear_void_rows(skin, hx);
     return sqrt(ruga_dot_product(skin->m, hx, hx)) / fmax(scale, 1e-300);
 }
 
@@ -528,6 +568,7 @@ ruga_status ruga_skin_restore(ruga_skin* skin, double* x) {
             skin->displacement[i] = skin->embedded[i] - x[i];
         }
         ruga_clusters_apply(&skin->model->clusters, skin->displacement, y);
+        ruga_skin_clear_void_rows(skin, y);
         RUGA_TRY(solve_gram(skin, y, y));
         memset(move, 0, (size_t)skin->n * sizeof *move);
         ruga_clusters_apply_transpose(&skin->model->clusters, y, move);

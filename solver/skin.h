@@ -37,6 +37,8 @@ typedef struct ruga_skin {
     double* stiffness;      // K as last assembled, without shift, in the shell's pattern
     ruga_factor* factor;
     ruga_factor_info info;
+    bool* row_void;         // [m] rows of H that are left out: what they average is held
+    bool near_dependent;    // the other rows are dependent on one another, or nearly
     bool factor_right;      // the factor's inertia is that of a minimum
     bool factor_exact;      // made from the exact Hessian without a shift, at the state last given
     ruga_factor* gram[3];   // H H^T over the free components; [1] and [2] NULL where they equal [0]
@@ -89,6 +91,8 @@ ruga_status ruga_skin_solve_system(ruga_skin* skin, const double* right, double*
 // out = gradient without its held components and without its part in the range of H^T; sets multiplier (so
 // that gradient + H^T multiplier is smallest). out may be gradient.
 ruga_status ruga_skin_project(ruga_skin* skin, const double* gradient, double* out);
+// Zeroes the entries of left-out rows in y [m].
+void ruga_skin_clear_void_rows(const ruga_skin* skin, double* y);
 // Moves x the least so that H x = H B q and held components are at their target.
 ruga_status ruga_skin_restore(ruga_skin* skin, double* x);
 // |H x - H B q| / |H B q|
