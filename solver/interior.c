@@ -268,7 +268,7 @@ static ruga_status residual(ruga_interior* in, const double* q, const double* x,
             side[3 * rows->node[p] + rows->axis[k]] -= rows->weight[p] * z[in->n + k];
         }
     }
-    double floor = 1e-8 * in->model->skin.young * in->model->skin.thickness * in->model->mean_edge;
+    double floor = ruga_model_force_floor(in->model);
     result->residual = sqrt(ruga_dot_product(in->n, side, side)) / fmax(sqrt(force_square), floor);
     return RUGA_OK;
 }

@@ -144,6 +144,7 @@ static ruga_status build_mesh(ruga_model* model) {
     for (int i = 0; i < 3; i++) {
         model->center[i] = 0.5 * (min[i] + max[i]);
     }
+    model->extent = ruga_distance(min, max);
     model->mean_edge = ruga_mesh_mean_edge(&model->mesh);
     RUGA_TRY(RUGA_NEW(model->vertex_area, model->mesh.vertex_count));
     ruga_mesh_vertex_areas(&model->mesh, model->vertex_area);
@@ -239,6 +240,13 @@ static ruga_status build_interior(ruga_model* model) {
                                   &model->rows));
     }
     return build_coupling(model);
+}
+
+double ruga_model_force_floor(const ruga_model* model) {
+    // A strain's round-off is that of positions over edges, so a nodal force has that of E h times the extent.
+    double stiffness = model->skin.young * model->skin.thickness;
+    double round_off = 0.25 * 0x1p-52 * model->extent * sqrt(3.0 * model->mesh.vertex_count);
+    return stiffness * fmax(1e-8 * model->mean_edge, round_off / model->solver.tolerance);
 }
 
 bool ruga_model_is_prescribed(const ruga_model* model) {

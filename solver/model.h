@@ -20,6 +20,7 @@ struct ruga_model {
     ruga_connectivity connectivity;
     double center[3]; // of the mesh's bounding box
     double mean_edge;
+    double extent;    // diagonal of the bounding box, m
 
     ruga_skin_def skin;
     bool has_interior;
@@ -49,7 +50,10 @@ struct ruga_model {
     bool solves_skin; // false: x = B q
 };
 
-// Text of the stage now built goes to ruga_progress.
+// The least reference force, N: 1e-8 E h times the mean edge, and never so small that the tolerance would be
+// below the round-off of the gradient.
+double ruga_model_force_floor(const ruga_model* model);
+
 bool ruga_model_is_prescribed(const ruga_model* model);
 
 #endif

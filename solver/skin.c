@@ -354,8 +354,7 @@ ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* 
     }
     double proximal = skin->proximal > 0 ? add_proximal(skin, x, gradient) : 0;
     terms->total = terms->membrane + terms->bending + terms->foundation + terms->external + proximal;
-    double floor = 1e-8 * model->skin.young * model->skin.thickness * model->mean_edge;
-    terms->force_reference = fmax(sqrt(force_square), floor);
+    terms->force_reference = fmax(sqrt(force_square), ruga_model_force_floor(model));
     skin->work.seconds_energy += ruga_clock() - begin;
     return RUGA_OK;
 }
@@ -418,7 +417,9 @@ ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
     for (int j = 0; j < skin->n && skin->proximal > 0; j++) {
         skin->stiffness[pattern->start[j]] += skin->proximal * model->vertex_area[j / 3];
     }
-    fill_kkt(skin, 0);
+    if (model->solves_skin) {
+        fill_kkt(skin, 0);
+    }
     skin->work.seconds_assembly += ruga_clock() - begin;
     return RUGA_OK;
 }

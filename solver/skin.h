@@ -4,8 +4,7 @@
 // The static problem of the skin on a given interior (Remillard and Kry 2013, section 6.1):
 //     minimise  E(x) = shell + foundation + loads + weight (+ proximal term)   over x
 //     subject to  H x = H B q   and   held components fixed.
-// This file evaluates it, factorises its KKT matrix [K H^T; H 0] and projects onto its constraints. The methods that
-// solve it are newton.c, quasi_newton.c and paper.c, reached by ruga_skin_minimize.
+// skin.c evaluates, factorises its KKT matrix [K H^T; H 0] and projects; ruga_skin_minimize calls a method.
 #ifndef RUGA_SOLVER_SKIN_H
 #define RUGA_SOLVER_SKIN_H
 
@@ -112,7 +111,6 @@ typedef struct ruga_skin_result {
 ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                ruga_skin_result* result);
 
-// The methods.
 ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                  ruga_skin_result* result);
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,

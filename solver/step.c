@@ -183,29 +183,45 @@ static void triangle_strains(int begin, int end, int chunk, void* context) {
     }
 }
 
-// Parts that a change of the embedded surface from `from` to `to` should be made in.
+// Parts that a triangle's gain of compressive strain should be made in.
+static double triangle_parts(double before, double after, double critical) {
+    double gain = after - before;
+    if (gain <= 0 || after < 0.5 * critical) {
+        return 1;
+    }
+    return gain / (before < 2 * critical ? fmin(0.25 * critical, 5e-3) : 5e-3);
+}
+
+// Parts that a change of the embedded surface from `from` to `to` should be made in: enough for all of it but an
+// area too small to hold a wrinkle, such as the rim of a handle.
 static int count_substeps(ruga_state* state, const double* from, const double* to) {
     const ruga_model* model = state->model;
-    double critical = model->critical_strain, parts = 1;
-    double* before = ruga_skin_vector(state->skin, 0);
-    strain_job job = {&model->mesh, from, state->strain};
+    const ruga_mesh* mesh = &model->mesh;
+    double* before = ruga_skin_vector(state->skin, 0); // longer than the number of triangles
+    double area_of_parts[MAX_SUBSTEPS + 1] = {0}, total = 0;
+    strain_job job = {mesh, from, state->strain};
     if (!model->solves_skin || !model->has_interior) {
         return 1;
     }
-    ruga_parallel_for(model->mesh.triangle_count, 4096, triangle_strains, &job);
-    // At most two triangles for each vertex and some: the first work vectors are long enough.
-    memcpy(before, state->strain, (size_t)model->mesh.triangle_count * sizeof *before);
+    ruga_parallel_for(mesh->triangle_count, 4096, triangle_strains, &job);
+    memcpy(before, state->strain, (size_t)mesh->triangle_count * sizeof *before);
     job.position = to;
-    ruga_parallel_for(model->mesh.triangle_count, 4096, triangle_strains, &job);
-    for (int f = 0; f < model->mesh.triangle_count; f++) {
-        double gain = state->strain[f] - before[f];
-        if (gain <= 0 || state->strain[f] < 0.5 * critical) {
-            continue;
-        }
-        double allowed = before[f] < 2 * critical ? fmin(0.25 * critical, 5e-3) : 5e-3;
-        parts = fmax(parts, gain / allowed);
+    ruga_parallel_for(mesh->triangle_count, 4096, triangle_strains, &job);
+    for (int f = 0; f < mesh->triangle_count; f++) {
+        const int* t = mesh->triangle + 3 * (size_t)f;
+        double parts = triangle_parts(before[f], state->strain[f], model->critical_strain), normal[3];
+        ruga_triangle_normal(mesh->position + 3 * (size_t)t[0], mesh->position + 3 * (size_t)t[1],
+                             mesh->position + 3 * (size_t)t[2], normal);
+        double area = 0.5 * ruga_norm(normal);
+        area_of_parts[(int)fmin(ceil(fmax(parts, 1) - 1e-9), MAX_SUBSTEPS)] += area;
+        total += area;
     }
-    return (int)fmin(ceil(parts - 1e-9), MAX_SUBSTEPS);
+    double allowed = fmin(0.01 * total, 0.25 * model->wavelength * model->wavelength);
+    int parts = MAX_SUBSTEPS;
+    for (double beyond = area_of_parts[parts]; parts > 1 && beyond <= allowed; beyond += area_of_parts[parts]) {
+        parts--;
+    }
+    return parts;
 }
 
 // ---- steps ---------------------------------------------------------------------------------------------
