@@ -128,7 +128,9 @@ static ruga_status copy_def(const ruga_model_def* def, ruga_model* model) {
     }
     RUGA_TRY(ruga_mesh_from_def(&def->mesh, &model->mesh));
     RUGA_TRY(RUGA_NEW(model->keyframes, def->keyframe_count));
-    memcpy(model->keyframes, def->keyframes, (size_t)def->keyframe_count * sizeof *model->keyframes);
+    for (int k = 0; k < def->keyframe_count; k++) {
+        model->keyframes[k] = def->keyframes[k];
+    }
     model->keyframe_count = def->keyframe_count;
     return copy_handles(def, model);
 }
