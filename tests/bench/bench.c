@@ -6,7 +6,7 @@
 // 20 ms each. Every method starts each measured frame from the same state, that of the default method; those that
 // use MINRES take minutes and run the first measured frame only. Where the published method stops short of the
 // tolerance, the times at which both first pass its final residual are compared. Prints a table; with a file name as
-// second argument also JSON.
+// second argument also JSON. RUGA_BENCH_SKIP in the environment names a method to leave out.
 #include "core/memory.h"
 #include "core/progress.h"
 #include "mesh/make.h"
@@ -145,7 +145,8 @@ static ruga_status bench_case(int unknowns, int frames, int paper_frames, FILE* 
         // The published method first: its final residual is the mark for the others.
         for (int v = METHODS - 1; v >= 0; v--) {
             bool minutes = v >= METHODS - 2;
-            if (minutes && k >= paper_frames) {
+            const char* skip = getenv("RUGA_BENCH_SKIP");
+            if ((minutes && k >= paper_frames) || (skip && strcmp(skip, variants[v].name) == 0)) {
                 continue;
             }
             RUGA_TRY_DONE(run_frame(model, state, &variants[v], restart, watched[k], k, &f[v]));
