@@ -427,8 +427,9 @@ class Library(Case):
         environment["LD_LIBRARY_PATH"] = os.path.dirname(os.path.dirname(found[0]))
         done = subprocess.run(["./library"], cwd=self.folder, env=environment, check=True, capture_output=True,
                               text=True)
-        height = float(re.fullmatch(r"highest wrinkle: ([\d.]+) mm\n", done.stdout)[1])
-        self.assertTrue(1 < height < 6, height)
+        heights = [float(z) for z in re.findall(r"step \d+: z = (-?[\d.]+) mm\n", done.stdout)]
+        self.assertEqual(len(heights), 10)
+        self.assertTrue(abs(heights[0]) < 0.1 and 0.5 < abs(heights[-1]) < 6, heights)
 
 
 if __name__ == "__main__":

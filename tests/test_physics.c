@@ -38,7 +38,8 @@ static void a_prescribed_sheet_wrinkles_as_theory_says(void** state) {
     }
 }
 
-// No clusters: free ends slip, so less strain reaches the skin; its own strain in the middle is what counts.
+// No clusters: free edges slip, so less strain reaches the skin; its own strain in the middle is what counts.
+// The sheet is wide enough for the middle to be nearly in plane strain.
 static void the_foundation_alone_wrinkles_at_the_skins_own_strain(void** state) {
     (void)state;
     enum { COUNT = 7 };
@@ -49,14 +50,14 @@ static void the_foundation_alone_wrinkles_at_the_skins_own_strain(void** state) 
     def.ratio = 100;
     def.clusters = false;
     def.length = 18;
-    def.width = 2;
+    def.width = 6;
     def.strain = strain;
     def.count = COUNT;
     assert_ok(sheet_run(&def, frame, &wavelength, &critical, &h));
     for (int k = 0; k < COUNT; k++) {
         assert_int_equal(frame[k].report.outcome, RUGA_OUTCOME_MINIMUM);
     }
-    double onset = sheet_onset(COUNT, frame, critical, true, def.poisson);
+    double onset = sheet_onset(COUNT, frame, critical, true, 0);
     print_message("onset %.3f eps_c, wavelength %.3f\n", onset, frame[COUNT - 1].wavelength_fft / wavelength);
     assert_near(onset, 1, 0.05);
     assert_near(frame[COUNT - 1].wavelength_fft, wavelength, 0.05 * wavelength);

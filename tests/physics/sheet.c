@@ -48,13 +48,19 @@ static void fill_def(const sheet_def* def, ruga_model_def* model, double h, doub
     model->lattice.depth = def->coupled ? def->depth * *wavelength : 0;
 }
 
-// One minus the slope of a straight line fitted to x over X in the middle third: chord strain, wrinkles
-// smoothed out.
-static double chord_strain(const ruga_mesh* mesh, const double* position, double length, int axis) {
+// The middle third in both directions.
+static bool in_middle(const ruga_mesh* mesh, int vertex, const double size[2]) {
+    const double* X = mesh->position + 3 * (size_t)vertex;
+    return fabs(X[0]) <= size[0] / 6 && fabs(X[1]) <= size[1] / 6;
+}
+
+// One minus the slope of a straight line fitted to x over X in the middle: chord strain, wrinkles smoothed
+// out.
+static double chord_strain(const ruga_mesh* mesh, const double* position, const double size[2], int axis) {
     double sx = 0, sxx = 0, sy = 0, sxy = 0, n = 0;
     for (int v = 0; v < mesh->vertex_count; v++) {
         double X = mesh->position[3 * v + axis], x = position[3 * v + axis];
-        if (fabs(mesh->position[3 * v]) <= length / 6) {
+        if (in_middle(mesh, v, size)) {
             n += 1;
             sx += X;
             sxx += X * X;
@@ -65,10 +71,10 @@ static double chord_strain(const ruga_mesh* mesh, const double* position, double
     return 1 - (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-static double middle_amplitude(const ruga_model* model, const double* w, double length) {
+static double middle_amplitude(const ruga_model* model, const double* w, const double size[2]) {
     double square = 0, area = 0;
     for (int v = 0; v < model->mesh.vertex_count; v++) {
-        if (fabs(model->mesh.position[3 * v]) <= length / 6) {
+        if (in_middle(&model->mesh, v, size)) {
             square += model->vertex_area[v] * w[v] * w[v];
             area += model->vertex_area[v];
         }
@@ -120,7 +126,7 @@ static ruga_status step_within(const sheet_def* def, const ruga_model* model, ru
 }
 
 static ruga_status run_frames(const sheet_def* def, const ruga_mesh* mesh, const ruga_model* model,
-                              double length, sheet_frame* frames) {
+                              const double size[2], sheet_frame* frames) {
     ruga_status status = RUGA_OK;
     ruga_state* state = NULL;
     ruga_measure* measure = NULL;
@@ -134,12 +140,12 @@ static ruga_status run_frames(const sheet_def* def, const ruga_mesh* mesh, const
         RUGA_TRY_DONE(step_within(def, model, state, f));
         RUGA_TRY_DONE(ruga_measure_frame(measure, x, ruga_state_embedded(state), &m));
         f->strain = def->strain[k] * critical;
-        f->skin_strain = chord_strain(mesh, x, length, 0);
-        f->across_strain = chord_strain(mesh, x, length, 1);
+        f->skin_strain = chord_strain(mesh, x, size, 0);
+        f->across_strain = chord_strain(mesh, x, size, 1);
         f->wavelength = m.wavelength;
         f->wavelength_fft = m.wavelength_fft;
         f->amplitude = m.amplitude;
-        f->middle_amplitude = middle_amplitude(model, ruga_measure_displacement(measure), length);
+        f->middle_amplitude = middle_amplitude(model, ruga_measure_displacement(measure), size);
         if (def->verbose) {
             print_frame(f, model);
         }
@@ -218,7 +224,7 @@ ruga_status sheet_run(const sheet_def* def, sheet_frame* frames, double* wavelen
         printf("V %d  clusters %d  lattice %d elements  lambda %g  ec %g\n", mesh.vertex_count,
                model->clusters.count, model->lattice.element_count, *wavelength, *critical);
     }
-    RUGA_TRY_DONE(run_frames(def, &mesh, model, length, frames));
+    RUGA_TRY_DONE(run_frames(def, &mesh, model, make.size, frames));
 done:
     ruga_model_destroy(&model);
     ruga_mesh_clear(&mesh);

@@ -25,10 +25,10 @@ typedef struct sheet_def {
 
 typedef struct sheet_frame {
     double strain;        // applied
-    double skin_strain;   // chord strain of the skin's middle third, along its length
+    double skin_strain;   // chord strain of the skin along its length, in the middle third of both directions
     double across_strain; // the same across its width
     double wavelength, wavelength_fft, amplitude;
-    double middle_amplitude; // sqrt(2) rms of w over the middle third
+    double middle_amplitude; // sqrt(2) rms of w over the same middle
     bool stopped;            // at frame_limit; the rest is of the state reached, and frames after it are zero
     ruga_report report;
 } sheet_frame;
