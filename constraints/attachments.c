@@ -15,9 +15,9 @@
 //    points are kept: in each element by pivoting, at most as many as it has free nodes; over all elements by
 //    a rank-revealing QR.
 //
-// Independent means: at least 1e-3 of the row (whose entries sum to one) is orthogonal to those kept before.
+// Independent means: at least 1e-4 of the row (whose entries sum to one) is orthogonal to those kept before.
 // A node with less influence than that on the held material is left to the elasticity instead of being flung
-// far out to correct the last digits; material that it moves follows the handle all the same to within 1e-3
+// far out to correct the last digits; material that it moves follows the handle all the same to within 1e-4
 // times the node's own deviation from T. The last pivot of a whole quadratic element's 27 points is 2e-3, so
 // such an element is recognised.
 //
@@ -34,7 +34,7 @@
 #include <limits.h>
 #include <string.h>
 
-static const double INDEPENDENCE = 1e-3;
+static const double INDEPENDENCE = 1e-4;
 
 // Sample points of an element's material: its quadrature points, and where the cell is full also the points of
 // {0, 1/2, 1}^3, so that a thin region on the material's outer face holds all of the face.

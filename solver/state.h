@@ -17,9 +17,10 @@ struct ruga_state {
     double* q;        // [N][3] lattice nodes
     double* v;        // [N][3] their velocities
     ruga_skin* skin;
-    ruga_interior* interior; // NULL where prescribed or absent
+    ruga_interior* interior;                        // NULL where prescribed or absent
     double *old_q, *old_x, *next_embedded, *anchor; // work
-    double* strain;   // [F] work: compressive strain of the embedded surface
+    double* strain;                                 // [F] work: compressive strain of the embedded surface
+    ruga_report start;                              // of frame 0
 };
 
 // Restart vector: all that the next frame depends on besides the model.
@@ -30,7 +31,7 @@ ruga_status ruga_state_load(ruga_state* state, const double* restart);
 // Lattice node positions [N][3]; NULL without an interior.
 const double* ruga_state_lattice(const ruga_state* state);
 
-// Energies, residuals and outcome of the state as it stands, for frame 0.
+// Energies and residuals of the state as it stands; the outcome and the work are those of frame 0.
 ruga_status ruga_state_measure(ruga_state* state, ruga_report* report);
 
 #endif

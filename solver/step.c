@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// One time step, and how it is split. Jumping far past onset freezes wrong modes (a short wave that the constraints
-// happen to allow), so the step is divided until no part of the surface gains more than a quarter of the critical
-// strain at a time below twice the critical strain, or half a percent beyond.
+// One time step, and how it is split. Jumping far past onset freezes wrong modes (a short wave that the
+// constraints happen to allow), so the step is divided until no part of the surface gains more than a quarter
+// of the critical strain at a time below twice the critical strain, or half a percent beyond.
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/vec3.h"
 #include "lattice/motion.h"
+#include "lattice/svd3.h"
 #include "solver/state.h"
 
 #include <math.h>
@@ -40,19 +41,14 @@ static void set_start(ruga_state* state) {
     if (!model->has_interior) {
         return;
     }
-    if (ruga_model_is_prescribed(model)) {
-        ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, 0, state->q);
-    } else {
-        memcpy(state->q, model->lattice.rest, 3 * (size_t)model->lattice.node_count * sizeof *state->q);
-    }
+    memcpy(state->q, model->lattice.rest, 3 * (size_t)model->lattice.node_count * sizeof *state->q);
     ruga_lattice_embed(&model->lattice, state->q, state->embedded);
     memcpy(state->x, state->embedded, n * sizeof *state->x);
 }
 
-ruga_status ruga_state_create(const ruga_model* model, ruga_state** out) {
+static ruga_status create_state(const ruga_model* model, ruga_state** out) {
     ruga_status status = RUGA_OK;
     ruga_state* state = NULL;
-    *out = NULL;
     RUGA_TRY(RUGA_NEW_ZERO(state, 1));
     state->model = model;
     RUGA_TRY_DONE(create_vectors(state));
@@ -118,7 +114,8 @@ int ruga_state_restart_size(const ruga_model* model) {
 }
 
 void ruga_state_save(const ruga_state* state, double* restart) {
-    size_t n = 3 * (size_t)state->model->mesh.vertex_count, nodes = 3 * (size_t)state->model->lattice.node_count;
+    size_t n = 3 * (size_t)state->model->mesh.vertex_count,
+           nodes = 3 * (size_t)state->model->lattice.node_count;
     *restart++ = state->frame;
     *restart++ = state->time;
     *restart++ = state->skin->shift_memory;
@@ -192,8 +189,8 @@ static double triangle_parts(double before, double after, double critical) {
     return gain / (before < 2 * critical ? fmin(0.25 * critical, 5e-3) : 5e-3);
 }
 
-// Parts that a change of the embedded surface from `from` to `to` should be made in: enough for all of it but an
-// area too small to hold a wrinkle, such as the rim of a handle.
+// Parts that a change of the embedded surface from `from` to `to` should be made in: enough for all of it but
+// an area too small to hold a wrinkle, such as the rim of a handle.
 static int count_substeps(ruga_state* state, const double* from, const double* to) {
     const ruga_model* model = state->model;
     const ruga_mesh* mesh = &model->mesh;
@@ -218,7 +215,8 @@ static int count_substeps(ruga_state* state, const double* from, const double* t
     }
     double allowed = fmin(0.01 * total, 0.25 * model->wavelength * model->wavelength);
     int parts = MAX_SUBSTEPS;
-    for (double beyond = area_of_parts[parts]; parts > 1 && beyond <= allowed; beyond += area_of_parts[parts]) {
+    for (double beyond = area_of_parts[parts]; parts > 1 && beyond <= allowed;
+         beyond += area_of_parts[parts]) {
         parts--;
     }
     return parts;
@@ -249,7 +247,8 @@ static void set_handle_targets(ruga_state* state) {
                 continue;
             }
             double target[3];
-            ruga_handle_target(&model->handles[h], state->skin->time, model->mesh.position + 3 * (size_t)v, target);
+            ruga_handle_target(&model->handles[h], state->skin->time, model->mesh.position + 3 * (size_t)v,
+                               target);
             bool follows = model->has_interior && model->handles[h].hold != RUGA_HOLD_SKIN;
             state->skin->target[i] = follows ? state->embedded[i] : target[axis];
         }
@@ -286,25 +285,120 @@ static ruga_status solve_skin_alone(ruga_state* state, ruga_report* report) {
     return RUGA_OK;
 }
 
-static ruga_status step_prescribed(ruga_state* state, ruga_report* report) {
+// After a solve: the work it took; a factor that did not end in a minimum is not kept.
+static void finish_report(ruga_state* state, double begin, ruga_report* out) {
+    const ruga_skin_work* work = &state->skin->work;
+    if (out->outcome != RUGA_OUTCOME_MINIMUM) {
+        state->skin->factor_right = state->skin->factor_exact = false;
+    }
+    out->newton_iterations += work->iterations;
+    out->linear_iterations += work->linear_iterations;
+    out->factorizations += work->factorizations;
+    out->seconds_assembly = work->seconds_assembly;
+    out->seconds_factor = work->seconds_factor;
+    out->seconds_solve = work->seconds_solve;
+    out->seconds_total = ruga_clock() - begin;
+    out->seconds_other =
+        out->seconds_total - out->seconds_assembly - out->seconds_factor - out->seconds_solve;
+}
+
+static void pose_at(const ruga_state* state, double time, double* q) {
     const ruga_model* model = state->model;
-    double begin = state->time, dt = model->step;
-    ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, begin + dt, state->q);
-    ruga_lattice_embed(&model->lattice, state->q, state->next_embedded);
-    // The published method takes the step as it comes.
-    bool published = model->solver.method == RUGA_METHOD_PAPER;
-    int parts = published ? 1 : count_substeps(state, state->embedded, state->next_embedded);
+    ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, time, q);
+}
+
+static ruga_status follow_pose(ruga_state* state, double* q, double done, ruga_report* report) {
+    ruga_lattice_embed(&state->model->lattice, q, state->next_embedded);
+    carry_skin(state, state->next_embedded);
+    RUGA_TRY(ruga_progress("static solve", done));
+    return solve_skin_alone(state, report);
+}
+
+// The published method takes a step as it comes.
+static int parts_to_pose(ruga_state* state, const double* q) {
+    ruga_lattice_embed(&state->model->lattice, q, state->next_embedded);
+    return state->model->solver.method == RUGA_METHOD_PAPER
+               ? 1
+               : count_substeps(state, state->embedded, state->next_embedded);
+}
+
+static ruga_status step_prescribed(ruga_state* state, ruga_report* report) {
+    double begin = state->time, dt = state->model->step;
+    pose_at(state, begin + dt, state->q);
+    int parts = parts_to_pose(state, state->q);
     report->substeps = parts;
     set_damping(state, dt / parts);
     for (int k = 1; k <= parts; k++) {
         state->skin->time = begin + dt * k / parts;
-        ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, state->skin->time,
-                       state->q);
-        ruga_lattice_embed(&model->lattice, state->q, state->next_embedded);
-        carry_skin(state, state->next_embedded);
-        RUGA_TRY(ruga_progress("static solve", (k - 1.0) / parts));
-        RUGA_TRY(solve_skin_alone(state, report));
+        pose_at(state, state->skin->time, state->q);
+        RUGA_TRY(follow_pose(state, state->q, (k - 1.0) / parts, report));
     }
+    return RUGA_OK;
+}
+
+// The rest shape turned as a pose turns it: the rotation nearest to sum (q - mean q) (X - mean X)^T, and its
+// mean.
+static void turn_rest(const ruga_lattice* lattice, const double* pose, double* turned) {
+    double f[9] = {0}, u[9], s[3], v[9], center[2][3] = {{0}};
+    int n = lattice->node_count;
+    for (int i = 0; i < 3 * n; i++) {
+        center[0][i % 3] += lattice->rest[i] / n;
+        center[1][i % 3] += pose[i] / n;
+    }
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < 9; i++) {
+            f[i] +=
+                (pose[3 * k + i / 3] - center[1][i / 3]) * (lattice->rest[3 * k + i % 3] - center[0][i % 3]);
+        }
+    }
+    ruga_svd3(f, u, s, v);
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < 3; i++) {
+            turned[3 * k + i] = center[1][i];
+            for (int j = 0; j < 9; j++) {
+                turned[3 * k + i] += u[3 * i + j / 3] * v[j % 3 * 3 + j / 3] *
+                                     (lattice->rest[3 * k + j % 3] - center[0][j % 3]);
+            }
+        }
+    }
+}
+
+static double largest_difference(size_t n, const double* a, const double* b) {
+    double most = 0;
+    for (size_t i = 0; i < n; i++) {
+        most = fmax(most, fabs(a[i] - b[i]));
+    }
+    return most;
+}
+
+// Frame 0 of a prescribed motion is the skin's static answer to the first pose, reached from the rest shape
+// in as many parts as a step would take: the rest shape is turned as the pose is, then deformed along
+// straight lines. Where the first pose is rigid and nothing loads the skin, it is at rest as it stands.
+static ruga_status settle(ruga_state* state) {
+    const ruga_model* model = state->model;
+    ruga_report* report = &state->start;
+    size_t nodes = 3 * (size_t)model->lattice.node_count;
+    double begin = ruga_clock(), *turned = state->old_q, *pose = state->v;
+    pose_at(state, 0, pose);
+    turn_rest(&model->lattice, pose, turned);
+    bool rigid = largest_difference(nodes, turned, pose) <= 1e-12 * model->extent;
+    memcpy(state->q, rigid ? pose : turned, nodes * sizeof *pose);
+    ruga_lattice_embed(&model->lattice, state->q, state->embedded);
+    memcpy(state->x, state->embedded, (size_t)state->skin->n * sizeof *state->x);
+    memcpy(state->anchor, state->x, (size_t)state->skin->n * sizeof *state->x);
+    set_handle_targets(state);
+    RUGA_TRY(ruga_state_measure(state, report));
+    if (!rigid || report->residual_shell > model->solver.tolerance) {
+        int parts = report->substeps = parts_to_pose(state, pose);
+        for (int k = 1; k <= parts; k++) {
+            for (size_t i = 0; i < nodes; i++) {
+                state->q[i] = k < parts ? turned[i] + (pose[i] - turned[i]) * k / parts : pose[i];
+            }
+            RUGA_TRY(follow_pose(state, state->q, (k - 1.0) / parts, report));
+        }
+        finish_report(state, begin, report);
+    }
+    memset(state->v, 0, nodes * sizeof *state->v);
     return RUGA_OK;
 }
 
@@ -352,9 +446,11 @@ static ruga_status step_part(ruga_state* state, double time, double dt, ruga_rep
     ruga_lattice_embed(&model->lattice, state->q, state->next_embedded);
     carry_skin(state, state->next_embedded);
     if (model->solver.method == RUGA_METHOD_PAPER) {
-        RUGA_TRY(ruga_interior_paper_step(in, model->solver.tolerance, state->q, state->x, state->embedded, &result));
+        RUGA_TRY(ruga_interior_paper_step(in, model->solver.tolerance, state->q, state->x, state->embedded,
+                                          &result));
     } else {
-        RUGA_TRY(ruga_interior_minimize(in, model->solver.tolerance, state->q, state->x, state->embedded, &result));
+        RUGA_TRY(ruga_interior_minimize(in, model->solver.tolerance, state->q, state->x, state->embedded,
+                                        &result));
     }
     for (int i = 0; i < n; i++) {
         state->v[i] = dynamic ? (state->q[i] - in->previous[i]) / dt : 0;
@@ -412,8 +508,7 @@ ruga_status ruga_state_step(const ruga_model* model, ruga_state* state, ruga_rep
     ruga_report unused, *out = report ? report : &unused;
     *out = (ruga_report){0};
     double begin = ruga_clock();
-    ruga_skin_work* work = &state->skin->work;
-    *work = (ruga_skin_work){0};
+    state->skin->work = (ruga_skin_work){0};
     if (!model->has_interior) {
         RUGA_TRY(step_shell(state, out));
     } else if (ruga_model_is_prescribed(model)) {
@@ -424,28 +519,29 @@ ruga_status ruga_state_step(const ruga_model* model, ruga_state* state, ruga_rep
     state->frame++;
     state->time = state->frame * model->step;
     state->skin->time = state->time;
-    if (out->outcome != RUGA_OUTCOME_MINIMUM) {
-        state->skin->factor_right = state->skin->factor_exact = false;
-    }
-    out->newton_iterations += work->iterations;
-    out->linear_iterations += work->linear_iterations;
-    out->factorizations += work->factorizations;
+    finish_report(state, begin, out);
     out->energy_kinetic = kinetic_energy(state);
-    out->seconds_assembly = work->seconds_assembly;
-    out->seconds_factor = work->seconds_factor;
-    out->seconds_solve = work->seconds_solve;
-    out->seconds_total = ruga_clock() - begin;
-    out->seconds_other = out->seconds_total - out->seconds_assembly - out->seconds_factor - out->seconds_solve;
     return RUGA_OK;
 }
 
 ruga_status ruga_state_measure(ruga_state* state, ruga_report* report) {
-    ruga_skin_result result = {.outcome = RUGA_OUTCOME_MINIMUM};
-    *report = (ruga_report){0};
+    ruga_skin_result result = {.outcome = state->start.outcome};
     double *gradient = ruga_skin_vector(state->skin, 0), *projected = ruga_skin_vector(state->skin, 1);
+    *report = state->start;
     RUGA_TRY(ruga_skin_energy(state->skin, state->x, &result.terms, gradient));
     RUGA_TRY(ruga_skin_project(state->skin, gradient, projected));
-    result.residual = state->model->solves_skin ? ruga_skin_residual(state->skin, projected, &result.terms) : 0;
+    result.residual =
+        state->model->solves_skin ? ruga_skin_residual(state->skin, projected, &result.terms) : 0;
     take_skin_result(state, &result, report);
     return RUGA_OK;
+}
+
+ruga_status ruga_state_create(const ruga_model* model, ruga_state** out) {
+    *out = NULL;
+    RUGA_TRY(create_state(model, out));
+    ruga_status status = model->has_interior && ruga_model_is_prescribed(model) ? settle(*out) : RUGA_OK;
+    if (status != RUGA_OK) {
+        ruga_state_destroy(out);
+    }
+    return status;
 }

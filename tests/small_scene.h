@@ -7,6 +7,7 @@
 
 #include "core/random.h"
 #include "core/vec3.h"
+#include "lattice/motion.h"
 #include "mesh/make.h"
 #include "solver/state.h"
 
@@ -21,6 +22,7 @@ typedef struct small_scene {
     ruga_model* model;
     ruga_state* state;
     double length; // m, of a sheet
+    bool flat;     // start flat in the second pose: x = B q, not at rest
 } small_scene;
 
 static inline void scene_mesh(small_scene* s, ruga_shape shape, double x, double y, double z, double edge) {
@@ -40,8 +42,8 @@ static inline void scene_mesh(small_scene* s, ruga_shape shape, double x, double
     }
 }
 
-// A skin of 1 mm that is 100 times stiffer than its box-filled interior, compressed along x to `strain`
-// critical ones at once: the state starts flat, x = Bq.
+// A skin of 1 mm that is 100 times stiffer than its box-filled interior. With a strain, in critical ones, the
+// state starts compressed by it along x, and flat, x = Bq.
 static inline void scene_sheet(small_scene* s, double length, double width, double edges, double strain) {
     const double h = 1e-3, lambda = 2 * RUGA_PI * h * cbrt(100.0 / 3), critical = 0.25 * pow(0.03, 2.0 / 3);
     *s = (small_scene){.length = 0};
@@ -52,13 +54,20 @@ static inline void scene_sheet(small_scene* s, double length, double width, doub
     s->def.interior.motion = RUGA_INTERIOR_PRESCRIBED;
     s->def.lattice.fill = RUGA_FILL_BOX;
     s->def.lattice.cells = 3;
-    s->key[0].matrix[0] = 1 - strain * critical;
-    s->def.keyframe_count = 1;
+    s->key[1].matrix[0] = 1 - strain * critical;
+    s->def.keyframe_count = 2;
+    s->flat = strain > 0;
 }
 
 static inline void scene_build(small_scene* s) {
     assert_ok(ruga_model_create(&s->def, &s->model));
     assert_ok(ruga_state_create(s->model, &s->state));
+    if (s->flat) {
+        ruga_state* state = s->state;
+        ruga_motion_at(&s->model->lattice, s->model->center, 1, s->key + 1, s->key[1].time, state->q);
+        ruga_lattice_embed(&s->model->lattice, state->q, state->embedded);
+        memcpy(state->x, state->embedded, (size_t)state->skin->n * sizeof *state->x);
+    }
 }
 
 static inline void scene_free_state(small_scene* s) {

@@ -301,6 +301,46 @@ static void a_jump_past_onset_is_split_and_a_small_step_is_not(void** state) {
     scene_free(&s);
 }
 
+// Frame 0 is the skin's answer to the first pose, reached as a step would reach it; a rigid pose needs no
+// solve.
+static void a_first_pose_is_solved_for(void** state) {
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        small_scene s;
+        ruga_report report, after;
+        double squash[9] = {1 - 2 * 0.0241, 0, 0, 0, 1, 0, 0, 0, 1};
+        scene_sheet(&s, 3, 1.5, 6, 0);
+        s.def.keyframe_count = 1;
+        memcpy(s.key[0].matrix, squash, sizeof squash);
+        if (turned) { // a half turn about z as well: straight lines to it would collapse the sheet
+            for (int i = 0; i < 6; i++) {
+                s.key[0].matrix[i] = -squash[i];
+            }
+        }
+        scene_build(&s);
+        assert_ok(ruga_state_measure(s.state, &report));
+        assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+        assert_true(report.residual_shell <= s.def.solver.tolerance);
+        assert_true(report.substeps >= 5 && report.substeps < 20);
+        assert_true(report.factorizations > 0);
+        assert_ok(ruga_state_step(s.model, s.state, &after));
+        double energy = report.energy_membrane + report.energy_bending + report.energy_foundation;
+        assert_near(after.energy_membrane + after.energy_bending + after.energy_foundation, energy,
+                    1e-3 * energy);
+        scene_free(&s);
+
+        scene_sheet(&s, 3, 1.5, 6, 0);
+        s.def.keyframe_count = 1;
+        s.key[0].matrix[0] = s.key[0].matrix[4] = turned ? -1 : 1;
+        scene_build(&s);
+        assert_ok(ruga_state_measure(s.state, &report));
+        assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+        assert_int_equal(report.factorizations, 0);
+        assert_near(report.energy_membrane, 0, 1e-15);
+        scene_free(&s);
+    }
+}
+
 // Flat stays flat: the published method has nothing that leaves the saddle, and must not call it a minimum.
 static void the_published_method_tells_an_honest_outcome(void** state) {
     (void)state;
@@ -422,6 +462,7 @@ int main(int argc, char** argv) {
         cmocka_unit_test(a_quasistatic_run_goes_on_with_the_same_bits),
         cmocka_unit_test(a_prescribed_run_goes_on_with_the_same_bits),
         cmocka_unit_test(a_jump_past_onset_is_split_and_a_small_step_is_not),
+        cmocka_unit_test(a_first_pose_is_solved_for),
         cmocka_unit_test(the_published_method_tells_an_honest_outcome),
         cmocka_unit_test(a_body_recovers_from_inversion_and_collapse),
         cmocka_unit_test(a_sheet_without_interior_sags_under_its_weight),

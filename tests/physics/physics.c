@@ -158,13 +158,13 @@ static ruga_status run_prescribed(suite* s) {
     return RUGA_OK;
 }
 
-// The free edges slip over the shear-lag length sqrt(h E_x / a): 1.8 and 8.2 wavelengths. In a sheet of two or
-// three of these lengths the middle is in the plane strain that the theory is of; without a Poisson's ratio
+// The free edges slip over the shear-lag length sqrt(h E_x / a): 1.8 and 8.2 wavelengths. In a sheet of five
+// of these lengths or more the middle is in the plane strain that the theory is of; without a Poisson's ratio
 // the width does not matter. In a narrow sheet the sides slip right to the middle, and what loads the skin is
 // the strain along plus nu times the strain across: that sum is recorded as well.
 static ruga_status run_foundation(suite* s) {
-    static const double slow_strains[] = {0.9, 1.2, 1.35, 1.5, 1.65, 1.8, 1.95};
-    static const double lengths[] = {24, 24, 40, 64}, widths[] = {9, 3, 28, 2};
+    static const double slow_strains[] = {0.9, 1.15, 1.3, 1.4, 1.5, 1.65};
+    static const double lengths[] = {24, 24, 64, 64}, widths[] = {9, 3, 40, 2};
     for (int k = 0; k < 4; k++) {
         run r;
         start_run(&r, "foundation alone", k / 2 ? 1e4 : 1e2, k % 2 ? 0 : 0.3, 1);
@@ -172,7 +172,7 @@ static ruga_status run_foundation(suite* s) {
         r.def.length = lengths[k];
         r.def.width = widths[k];
         if (k == 2) {
-            add_strains(&r, 7, slow_strains);
+            add_strains(&r, 6, slow_strains);
         } else {
             add_strains(&r, ONSET_COUNT, ONSET_STRAINS);
             add_strains(&r, 2, (const double[]){1.7, 1.8});
@@ -183,7 +183,7 @@ static ruga_status run_foundation(suite* s) {
                  sheet_onset(r.def.count, r.frame, r.critical, true, 0), 1, 0.05);
         add_line(s, &r, "onset / eps_c, own plane strain",
                  sheet_onset(r.def.count, r.frame, r.critical, true, r.def.poisson), 1, 0);
-        add_wavelength(s, &r, 1.8, "wavelength_fft / eq. 3, 1.8 eps_c", 0.05);
+        add_wavelength(s, &r, r.strain[r.def.count - 1], "wavelength_fft / eq. 3, last strain", 0.05);
     }
     return RUGA_OK;
 }
