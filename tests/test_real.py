@@ -90,7 +90,9 @@ class Case(unittest.TestCase):
         """The wavelength of the formula, which knows neither curvature nor handles, within a factor of two."""
         self.assertGreater(found["wavelength"], found["wavelength_predicted"] / 2)
         self.assertLess(found["wavelength"], found["wavelength_predicted"] * 2)
-        self.assertGreater(found["amplitude"], thickness / 8)
+        print(f"wavelength {found['wavelength'] / found['wavelength_predicted']:.3f} of the formula, "
+              f"amplitude {found['amplitude'] / thickness:.3f} h")
+        self.assertGreater(found["amplitude"], thickness / 4)
 
 
 class Real(Case):
@@ -103,9 +105,9 @@ class Real(Case):
         self.wrinkled(found, 2.5e-3)
 
     def test_teddy_lets_its_head_be_pushed_down(self):
-        _, found = self.simulate("teddy.yaml", "sh3d_teddyBear_body_watertight.obj",
-                                 "handles.1.move.translate=[0, -1 cm, 0]", frames=1)
-        self.assertLess(found["volume"], 6.432e-3)
+        _, found = self.simulate("teddy.yaml", "sh3d_teddyBear_body_watertight.obj", frames=2)
+        self.wrinkled(found, 1.5e-3)
+        self.assertLess(found["volume"], 6.4e-3)
 
     def test_head_opens_its_mouth(self):
         plan, _ = self.simulate("head_jaw.yaml", "makehuman_head_watertight.obj", frames=3)

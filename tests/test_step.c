@@ -301,6 +301,29 @@ static void a_jump_past_onset_is_split_and_a_small_step_is_not(void** state) {
     scene_free(&s);
 }
 
+// More clusters than free vertices, most of the skin being held: their rows depend on one another, and hold.
+static void near_dependent_rows_are_kept(void** state) {
+    (void)state;
+    for (int method = 0; method < 2; method++) {
+        small_scene s;
+        scene_bar(&s, -6e-3, 4, 10e-3);
+        s.def.coupling.radius = 12e-3;
+        s.def.coupling.sigma = 60e-3;
+        s.handle[1].region.center[0] = -0.025;
+        s.def.solver.method = method ? RUGA_METHOD_NEWTON : RUGA_METHOD_QUASI_NEWTON;
+        scene_build(&s);
+        assert_true(s.state->skin->near_dependent);
+        for (int k = 0; k < 2; k++) {
+            ruga_report report;
+            assert_ok(ruga_state_step(s.model, s.state, &report));
+            assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+            assert_true(report.residual_coupled <= s.def.solver.tolerance);
+            assert_true(report.constraint_residual <= 1e-9);
+        }
+        scene_free(&s);
+    }
+}
+
 // Frame 0 is the skin's answer to the first pose, reached as a step would reach it; a rigid pose needs no
 // solve.
 static void a_first_pose_is_solved_for(void** state) {
@@ -462,6 +485,7 @@ int main(int argc, char** argv) {
         cmocka_unit_test(a_quasistatic_run_goes_on_with_the_same_bits),
         cmocka_unit_test(a_prescribed_run_goes_on_with_the_same_bits),
         cmocka_unit_test(a_jump_past_onset_is_split_and_a_small_step_is_not),
+        cmocka_unit_test(near_dependent_rows_are_kept),
         cmocka_unit_test(a_first_pose_is_solved_for),
         cmocka_unit_test(the_published_method_tells_an_honest_outcome),
         cmocka_unit_test(a_body_recovers_from_inversion_and_collapse),
