@@ -149,6 +149,8 @@ static ruga_status read_words(ruga_arguments* a, int count, char** words) {
             options = false;
         } else if (options && words[i][0] == '-' && words[i][1]) {
             RUGA_TRY(read_option(a, count, words, &i));
+        } else if (!a->command->operand) {
+            return ruga_fail(RUGA_BAD_INPUT, "%s: takes options only, not %s", a->command->name, words[i]);
         } else if (a->operand) {
             return ruga_fail(RUGA_BAD_INPUT, "%s: it takes one %s, but both %s and %s are given",
                              a->command->name, a->command->operand, a->operand, words[i]);
@@ -156,7 +158,7 @@ static ruga_status read_words(ruga_arguments* a, int count, char** words) {
             a->operand = words[i];
         }
     }
-    if ((!a->operand || !*a->operand) && !ruga_given(a, "--help")) {
+    if (a->command->operand && (!a->operand || !*a->operand) && !ruga_given(a, "--help")) {
         return ruga_fail(RUGA_BAD_INPUT, "%s: no %s is given; ruga %s --help shows how", a->command->name,
                          a->command->operand, a->command->name);
     }

@@ -32,7 +32,7 @@ typedef ruga_status ruga_command_function(const ruga_arguments* arguments, int* 
 
 typedef struct ruga_command {
     const char* name;
-    const char* operand; // "SCENE": every command takes exactly one
+    const char* operand; // "SCENE"; NULL = the command takes none
     const char* usage;   // the options as they are usually written
     const char* summary; // one line
     const char* about;
@@ -42,7 +42,7 @@ typedef struct ruga_command {
 } ruga_command;
 
 extern const ruga_command ruga_make_command, ruga_check_command, ruga_remesh_command, ruga_explain_command,
-    ruga_run_command, ruga_measure_command, ruga_export_command, ruga_render_command;
+    ruga_run_command, ruga_measure_command, ruga_export_command, ruga_render_command, ruga_validate_command;
 extern const ruga_command* const ruga_commands[]; // ended by NULL
 
 // ---- arguments -----------------------------------------------------------------------------------------

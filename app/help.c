@@ -66,7 +66,8 @@ static void print_option(const ruga_option* option) {
 }
 
 void ruga_print_command_help(const ruga_command* command) {
-    (void)printf("usage: ruga %s %s %s\n\n%s\n\noptions:\n", command->name, command->operand, command->usage,
+    (void)printf("usage: ruga %s%s%s %s\n\n%s\n\noptions:\n", command->name, command->operand ? " " : "",
+                 command->operand ? command->operand : "", command->usage,
                  command->about);
     const ruga_option* const tables[] = {command->options, ruga_common_options};
     for (int t = 0; t < 2; t++) {

@@ -5,7 +5,7 @@
 // and eps_c = (1/4)(3 E*_q / E*_x)^(2/3), A = h sqrt(eps/eps_c - 1). script/physics has the others.
 #include "tests/check.h"
 
-#include "tests/physics/sheet.h"
+#include "app/validate/sheet.h"
 
 static void check_amplitude(const sheet_frame* f, double critical, double h, double tolerance) {
     double law = h * sqrt(f->strain / critical - 1);

@@ -7,7 +7,7 @@
 //     physics [-o DIRECTORY] [GROUP ...]      groups: prescribed foundation coupled clusters spectral paper
 // Prints a table; writes DIRECTORY/frames.csv and DIRECTORY/lines.json. Exit status 1 where a line with a
 // tolerance fails, 3 where a run or a file does. Lines without a tolerance are recorded only.
-#include "tests/physics/sheet.h"
+#include "app/validate/sheet.h"
 
 #include "core/progress.h"
 

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // Runs one sheet from the command line and prints each frame: for trials.
-#include "tests/physics/sheet.h"
+#include "app/validate/sheet.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 //
 // A sheet on a box-filled lattice, compressed along its length: the case whose wavelength, onset and
 // amplitude theory gives. Shared by the tests and the physics runs.
-#ifndef RUGA_TESTS_PHYSICS_SHEET_H
-#define RUGA_TESTS_PHYSICS_SHEET_H
+#ifndef RUGA_APP_VALIDATE_SHEET_H
+#define RUGA_APP_VALIDATE_SHEET_H
 
 #include "ruga/ruga.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
-#include "tests/physics/sheet.h"
+#include "app/validate/sheet.h"
 
 #include "app/measure.h"
 #include "core/memory.h"
