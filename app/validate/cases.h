@@ -7,6 +7,7 @@
 
 #include "app/validate/validation.h"
 
-extern const ruga_validation_case ruga_validate_sheet, ruga_validate_bar, ruga_validate_interior;
+extern const ruga_validation_case ruga_validate_sheet, ruga_validate_elements, ruga_validate_bar,
+    ruga_validate_interior;
 
 #endif
