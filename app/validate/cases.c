@@ -8,6 +8,8 @@ const ruga_validation_case* const ruga_validation_cases[] = {
     &ruga_validate_sheet,
     &ruga_validate_elements,
     &ruga_validate_bar,
+    &ruga_validate_zigzag,
+    &ruga_validate_flower,
     &ruga_validate_interior,
     NULL,
 };

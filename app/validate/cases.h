@@ -8,6 +8,7 @@
 #include "app/validate/validation.h"
 
 extern const ruga_validation_case ruga_validate_sheet, ruga_validate_elements, ruga_validate_bar,
+    ruga_validate_zigzag, ruga_validate_flower,
     ruga_validate_interior;
 
 #endif
