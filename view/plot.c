@@ -184,32 +184,41 @@ static void draw_reference(page* p, double x0, double x1, double y) {
     set_dash(p->canvas.cairo, false);
 }
 
+// `margin`: a marker on the frame is seen whole.
+static void clip_to_frame(page* p, double margin) {
+    cairo_rectangle(p->canvas.cairo, p->x.from - margin, p->y.to - margin, p->x.to - p->x.from + 2 * margin,
+                    p->y.from - p->y.to + 2 * margin);
+    cairo_clip(p->canvas.cairo);
+}
+
 static void draw_data(page* p) {
-    cairo_t* cairo = p->canvas.cairo;
-    cairo_save(cairo);
-    // A marker on the frame is seen whole.
-    cairo_rectangle(cairo, p->x.from - 1.3 * MARKER, p->y.to - 1.3 * MARKER,
-                    p->x.to - p->x.from + 2.6 * MARKER, p->y.from - p->y.to + 2.6 * MARKER);
-    cairo_clip(cairo);
-    for (int k = 0; k < p->def->series_count; k++) {
-        if (p->def->series[k].low && p->def->series[k].high) {
-            (p->def->series[k].bars ? draw_bars : draw_band)(p, k);
+    const ruga_plot_def* d = p->def;
+    cairo_save(p->canvas.cairo);
+    clip_to_frame(p, 0);
+    for (int k = 0; k < d->series_count; k++) {
+        if (d->series[k].low && d->series[k].high) {
+            (d->series[k].bars ? draw_bars : draw_band)(p, k);
         }
     }
-    for (int k = 0; k < p->def->reference_count; k++) {
-        if (ruga_axis_shows(&p->y, p->def->references[k].y)) {
-            draw_reference(p, p->x.from, p->x.to, ruga_axis_place(&p->y, p->def->references[k].y));
+    for (int k = 0; k < d->reference_count; k++) {
+        if (ruga_axis_shows(&p->y, d->references[k].y)) {
+            draw_reference(p, p->x.from, p->x.to, ruga_axis_place(&p->y, d->references[k].y));
         }
     }
-    for (int k = 0; k < p->def->series_count; k++) {
-        if (p->def->series[k].style != RUGA_PLOT_MARKERS) {
+    for (int k = 0; k < d->series_count; k++) {
+        if (d->series[k].style != RUGA_PLOT_MARKERS) {
             draw_line(p, k);
         }
-        if (p->def->series[k].style <= RUGA_PLOT_MARKERS) {
+    }
+    cairo_restore(p->canvas.cairo);
+    cairo_save(p->canvas.cairo);
+    clip_to_frame(p, 1.5 * MARKER);
+    for (int k = 0; k < d->series_count; k++) {
+        if (d->series[k].style <= RUGA_PLOT_MARKERS) {
             draw_markers(p, k);
         }
     }
-    cairo_restore(cairo);
+    cairo_restore(p->canvas.cairo);
 }
 
 // ---- legend --------------------------------------------------------------------------------------------

@@ -44,7 +44,8 @@ static ruga_status draw_amplitude(ruga_validation* v, int count, const sheet_res
     char path[RUGA_VALIDATION_PATH], names[RATIOS][48];
     double x[LAW_POINTS], law[LAW_POINTS], low[LAW_POINTS], high[LAW_POINTS], ours[RATIOS][STRAINS];
     for (int i = 0; i < LAW_POINTS; i++) {
-        x[i] = 0.75 + (3.05 - 0.75) * i / (LAW_POINTS - 1);
+        double t = (i - 1.0) / (LAW_POINTS - 2); // dense where the law is steep
+        x[i] = i == 0 ? 0.75 : 1 + 2.05 * t * t;
         law[i] = sqrt(fmax(x[i] - 1, 0));
         low[i] = 0.94 * law[i];
         high[i] = 1.06 * law[i];
