@@ -3,7 +3,7 @@
 //
 // The processes of a sweep. Each is this same program's `run --resume --threads 1`, in a process group of its
 // own: Ctrl-C on the terminal reaches the sweep alone, which passes it on once, so that each run ends at a
-// whole frame (two would end it at once).
+// whole frame (two would end it at once). Where the sweep is killed, the kernel tells its runs the same.
 #define _POSIX_C_SOURCE 200809L
 #include "app/sweep.h"
 
@@ -18,6 +18,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -73,6 +74,10 @@ static ruga_status read_result(ruga_sweep_point* point, bool* complete) {
     json_t* measured = ruga_measurement_json(&m);
     add_scalars(point->row, "", measured);
     json_decref(measured);
+    // Below 8 the wrinkles are too long, which `run` would warn of.
+    double edge = ruga_mesh_mean_edge(ruga_result_mesh(reader));
+    set_value(point->row, "edges_per_wavelength",
+              m.predicted > 0 ? json_real(m.predicted / edge) : json_null());
     set_value(point->row, "frames_not_minimum", json_integer(bad));
     set_value(point->row, "seconds", json_real(seconds));
     point->exit_status = bad > 0 ? RUGA_EXIT_NOT_CONVERGED : RUGA_EXIT_DONE;
@@ -173,6 +178,7 @@ static bool is_stale(const ruga_sweep_point* point) {
 static void become_run(char* const* words, int log) {
     int null = open("/dev/null", O_RDWR);
     (void)setpgid(0, 0);
+    (void)prctl(PR_SET_PDEATHSIG, SIGINT);
     (void)dup2(null, STDIN_FILENO);
     (void)dup2(null, STDOUT_FILENO);
     (void)dup2(log, STDERR_FILENO);

@@ -478,6 +478,44 @@ class Sweeps(Case):
         self.ruga("run", self.scene, "-o", "alone.h5", "--set", "skin.young=30 MPa", "--set", "skin.thickness=2 mm")
         self.assertEqual(difference(self.path("alone.h5"), self.path("map/" + rows[0]["result"])), [])
 
+    def test_a_killed_sweep_leaves_no_run_behind(self):
+        command = [RUGA, "sweep", self.scene, *self.GRID, "-o", "map", "--jobs", "2", "--quiet"]
+
+        def runs():
+            found = 0
+            for name in glob.glob("/proc/[0-9]*/cmdline"):
+                try:
+                    with open(name, "rb") as file:
+                        words = file.read()
+                    found += b"\0run\0" in words and self.folder.encode() in words
+                except OSError:
+                    pass
+            return found
+
+        with subprocess.Popen(command, cwd=self.folder) as process:
+            end = time.monotonic() + 60
+            while not glob.glob(self.path("map/points/*.h5")) and time.monotonic() < end:
+                time.sleep(0.01)
+            self.assertGreater(runs(), 0)
+            process.kill()
+        while runs() and time.monotonic() < end:
+            time.sleep(0.05)
+        self.assertEqual(runs(), 0)
+        self.ruga(*command[1:])
+        self.assertEqual({row["error"] for row in self.rows()}, {""})
+
+    def test_a_point_starts_afresh_where_its_mesh_has_changed(self):
+        self.ruga("make", "sheet", "--size", "14cm,4cm", "--edge", "4.2mm", "-o", "sheet.obj")
+        made = "{make: {shape: sheet, size: [14 cm, 4 cm], edge: 4.2 mm}}"
+        self.scene = self.write("scene.yaml", SCENE.replace(made, "{file: sheet.obj}"))
+        self.sweep()
+        old = self.rows()
+        self.ruga("make", "sheet", "--size", "14cm,4cm", "--edge", "4mm", "-o", "sheet.obj")
+        self.assertIn("0 are complete already", self.sweep().stdout)
+        for before, after in zip(old, self.rows()):
+            self.assertEqual((before["result"], after["error"]), (after["result"], ""))
+            self.assertLess(float(before["edges_per_wavelength"]), float(after["edges_per_wavelength"]))
+
     def test_bad_input_is_found_before_anything_is_run(self):
         for word, saying in (("skin.young=[]", "no entries"), ("skin.yung=[1, 2]", "did you mean skin.young"),
                              ("skin.young=[1 MPa, 2 mm]", "a length"), ("skin.young=[1 MPa, 1e6]", "the same scene"),

@@ -3,7 +3,7 @@
 //
 // Plots: what is drawn, what is refused, and the same bytes each time. What they look like is for eyes:
 // RUGA_KEEP_PLOTS=1 leaves the files in the build's tests folder.
-#include "check.h"
+#include "tests/check.h"
 
 #include "core/memory.h"
 #include "core/vec3.h"
