@@ -174,16 +174,32 @@ static bool is_stale(const ruga_sweep_point* point) {
     return stale;
 }
 
-// Between fork and exec: only what is safe there.
-static void become_run(char* const* words, int log) {
+// Between fork and exec: only what is safe there. SIGINT is blocked until nothing of the sweep's own handling
+// is left, which would only make a note of it.
+static void become_run(char* const* words, int log, const sigset_t* interrupt) {
     int null = open("/dev/null", O_RDWR);
     (void)setpgid(0, 0);
     (void)prctl(PR_SET_PDEATHSIG, SIGINT);
     (void)dup2(null, STDIN_FILENO);
     (void)dup2(null, STDOUT_FILENO);
     (void)dup2(log, STDERR_FILENO);
+    (void)signal(SIGINT, SIG_DFL);
+    (void)sigprocmask(SIG_UNBLOCK, interrupt, NULL);
     (void)execv("/proc/self/exe", words);
     _exit(STATUS_EXEC);
+}
+
+static pid_t fork_run(char* const* words, int log) {
+    sigset_t interrupt;
+    (void)sigemptyset(&interrupt);
+    (void)sigaddset(&interrupt, SIGINT);
+    (void)sigprocmask(SIG_BLOCK, &interrupt, NULL);
+    pid_t child = fork();
+    if (child == 0) {
+        become_run(words, log, &interrupt);
+    }
+    (void)sigprocmask(SIG_UNBLOCK, &interrupt, NULL);
+    return child;
 }
 
 static ruga_status start(const ruga_sweep* sweep, ruga_sweep_point* point) {
@@ -206,10 +222,7 @@ static ruga_status start(const ruga_sweep* sweep, ruga_sweep_point* point) {
     words[count++] = end;
     words[count++] = (char*)sweep->scene;
     int log = open(point->log, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    pid_t child = log >= 0 ? fork() : -1;
-    if (child == 0) {
-        become_run(words, log);
-    }
+    pid_t child = log >= 0 ? fork_run(words, log) : -1;
     int reason = errno;
     if (log >= 0) {
         (void)close(log);
@@ -248,9 +261,11 @@ static ruga_status look_after(ruga_sweep_point* point, bool* ended) {
         return RUGA_OK;
     }
     point->exit_status = got > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : EXIT_UNKNOWN;
-    bool stopped = point->exit_status == RUGA_EXIT_INTERRUPTED;
+    bool killed = got > 0 && WIFSIGNALED(status);
+    bool stopped = point->exit_status == RUGA_EXIT_INTERRUPTED || (killed && WTERMSIG(status) == SIGINT);
     point->state = stopped ? RUGA_SWEEP_WAITS : RUGA_SWEEP_DONE;
-    if (got > 0 && WIFSIGNALED(status)) {
+    point->exit_status = stopped ? EXIT_UNKNOWN : point->exit_status;
+    if (killed && !stopped) {
         FILE* log = fopen(point->log, "a");
         if (log) {
             (void)fprintf(log, "ruga: its process was ended by signal %d\n", WTERMSIG(status));
@@ -258,8 +273,7 @@ static ruga_status look_after(ruga_sweep_point* point, bool* ended) {
         }
     }
     RUGA_TRY(ruga_sweep_measure(point));
-    if (point->state == RUGA_SWEEP_DONE && point->exit_status <= RUGA_EXIT_NOT_CONVERGED &&
-        point->exit_status >= 0) {
+    if (stopped || point->exit_status == RUGA_EXIT_DONE || point->exit_status == RUGA_EXIT_NOT_CONVERGED) {
         (void)unlink(point->log);
     }
     return RUGA_OK;
