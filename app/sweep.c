@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS_MAX = 100000, KEY_LENGTH = 160 };
+enum { POINTS_MAX = 10000, KEY_LENGTH = 160 };
 
 // ---- values --------------------------------------------------------------------------------------------
 
