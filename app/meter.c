@@ -8,6 +8,7 @@
 #include "app/console.h"
 #include "core/progress.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -70,6 +71,16 @@ void ruga_meter_frame(ruga_meter* meter, double time, const ruga_report* report)
         (void)fprintf(stderr, "  %d substeps", report->substeps);
     }
     (void)fprintf(stderr, meter->recent_count > 0 ? "  left %s\n" : "\n", left);
+}
+
+void ruga_meter_point(ruga_meter* meter, double seconds, const char* text) {
+    char left[32];
+    meter->recent[meter->recent_count++ % RUGA_METER_RECENT] = seconds;
+    ruga_duration(fmax(time_left(meter, meter->frames - meter->frame), 0), left);
+    if (!meter->quiet && !meter->terminal) {
+        (void)fprintf(stderr, "%d/%d  %s  left %s\n", meter->frame, meter->frames, text, left);
+    }
+    meter->frame++;
 }
 
 void ruga_meter_erase(ruga_meter* meter) {

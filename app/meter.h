@@ -22,6 +22,8 @@ ruga_meter ruga_meter_start(bool quiet, int frames);
 void ruga_meter_stage(ruga_meter* meter, const char* stage, double done);
 // The frame is written.
 void ruga_meter_frame(ruga_meter* meter, double time, const ruga_report* report);
+// The same for work that is not a frame: what it was, and the seconds that it took of the whole.
+void ruga_meter_point(ruga_meter* meter, double seconds, const char* text);
 // Takes the bar away, so that something else can be printed.
 void ruga_meter_erase(ruga_meter* meter);
 

@@ -6,6 +6,7 @@
 #include "app/command.h"
 #include "ruga/base.h"
 
+#include <cairo.h>
 #include <cholmod.h>
 #include <hdf5.h>
 #include <jansson.h>
@@ -35,4 +36,5 @@ void ruga_print_version(void) {
     (void)printf("libyaml %s\n", yaml_get_version_string());
     (void)printf("jansson %s\n", JANSSON_VERSION);
     (void)printf("libpng %s\n", PNG_LIBPNG_VER_STRING);
+    (void)printf("cairo %s\n", CAIRO_VERSION_STRING);
 }

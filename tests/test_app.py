@@ -3,6 +3,7 @@
 #
 # The program as a user meets it: test_app.py RUGA BUILD_DIR SOURCE_DIR [unittest arguments].
 # Results are compared with h5py where it is there, otherwise with h5diff.
+import csv
 import glob
 import json
 import os
@@ -129,7 +130,8 @@ class Help(Case):
 
     def test_version_names_the_libraries(self):
         text = self.ruga("--version").stdout
-        for name in ("ruga 0.", "SuiteSparse", "CHOLMOD", "Belos", "OpenVDB", "HDF5", "CGAL", "libyaml", "UDUNITS"):
+        for name in ("ruga 0.", "SuiteSparse", "CHOLMOD", "Belos", "OpenVDB", "HDF5", "CGAL", "libyaml", "UDUNITS",
+                     "cairo"):
             self.assertIn(name, text)
         self.assertNotRegex(text, r"(?m) $")
 
@@ -400,6 +402,147 @@ class Runs(Case):
         os.close(writer)
         self.assertEqual(done.returncode, 3)
         self.assertIn("pipe", done.stderr)
+
+
+class Sweeps(Case):
+    GRID = ("--set", "skin.young=[30 MPa, 4e7]", "--set", "skin.thickness=[2 mm, 0.0025]")
+
+    def sweep(self, *more, status=0, grid=GRID, frames=2):
+        return self.ruga("sweep", self.scene, *grid, "--set", f"time.frames={frames}", "-o", "map", *more, status=status)
+
+    def rows(self):
+        with open(self.path("map/sweep.csv"), newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_the_table_holds_what_was_set_and_measured(self):
+        done = self.sweep("--jobs", 2)
+        self.assertEqual(done.stderr.count("\n"), 4, done.stderr)
+        self.assertRegex(done.stderr, r"(?m)^4/4  skin\.young=.+, skin\.thickness=.+: minimum, .+  left")
+        rows = self.rows()
+        self.assertEqual([(float(r["skin.young"]), float(r["skin.thickness"])) for r in rows],
+                         [(3e7, 2e-3), (3e7, 2.5e-3), (4e7, 2e-3), (4e7, 2.5e-3)])
+        self.assertEqual([r["skin.young_given"] for r in rows], ["30 MPa", "30 MPa", "4e7", "4e7"])
+        for row in rows:
+            measured = self.json("measure", os.path.join("map", row["result"]))
+            self.assertEqual(measured["frame"], 2)
+            for key in ("wavelength", "wavelength_fft", "wavelength_predicted", "amplitude", "residual_shell"):
+                self.assertEqual(float(row[key]), measured[key], key)
+            self.assertEqual(float(row["energy_membrane"]), measured["energy"]["membrane"])
+            self.assertEqual((row["outcome"], row["status"], row["error"]), ("minimum", "0", ""))
+        self.ruga("run", self.scene, "-o", "alone.h5", "--frames", 2, "--set", "skin.young=4e7", "--set",
+                  "skin.thickness=2 mm")
+        self.assertEqual(difference(self.path("alone.h5"), self.path(os.path.join("map", rows[2]["result"]))), [])
+
+    @unittest.skipUnless(h5py, "h5py is not there")
+    def test_both_tables_say_the_same(self):
+        self.sweep("--quiet")
+        rows = self.rows()
+        with h5py.File(self.path("map/sweep.h5"), "r") as file:
+            self.assertEqual(sorted(file), sorted(rows[0]))
+            for name, column in file.items():
+                for row, value in zip(rows, column[()]):
+                    if isinstance(value, bytes):
+                        self.assertEqual(value.decode(), row[name])
+                    else:
+                        self.assertEqual(float(value), float(row[name]))
+
+    def test_complete_points_are_not_run_again_and_keep_their_place(self):
+        self.sweep()
+        first = {row["result"]: os.stat(self.path("map/" + row["result"])).st_mtime_ns for row in self.rows()}
+        again = self.sweep()
+        self.assertIn("4 are complete already", again.stdout)
+        self.assertEqual(again.stderr, "")
+        more = self.sweep(grid=("--set", "skin.young=[30 MPa, 35 MPa, 4e7]", "--set", "skin.thickness=[2 mm, 2.5 mm]"))
+        self.assertIn("4 are complete already", more.stdout)
+        rows = self.rows()
+        self.assertEqual(len(rows), 6)
+        self.assertLess(first.keys(), {row["result"] for row in rows})
+        for name, written in first.items():
+            self.assertEqual(os.stat(self.path("map/" + name)).st_mtime_ns, written)
+
+    def test_ctrl_c_stops_all_runs_and_the_same_command_goes_on(self):
+        command = [RUGA, "sweep", self.scene, *self.GRID, "-o", "map", "--jobs", "2"]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                              text=True) as process:
+            end = time.monotonic() + 60
+            while not glob.glob(self.path("map/points/*.h5")) and time.monotonic() < end:
+                time.sleep(0.01)
+            process.send_signal(signal.SIGINT)
+            said = process.stderr.read()
+        self.assertEqual(process.returncode, 130, said)
+        self.assertIn("the same command goes on", said)
+        self.assertIn("not run to its end yet", {row["error"] for row in self.rows()})
+        self.ruga(*command[1:])
+        rows = self.rows()
+        self.assertEqual({row["error"] for row in rows}, {""})
+        self.ruga("run", self.scene, "-o", "alone.h5", "--set", "skin.young=30 MPa", "--set", "skin.thickness=2 mm")
+        self.assertEqual(difference(self.path("alone.h5"), self.path("map/" + rows[0]["result"])), [])
+
+    def test_a_killed_sweep_leaves_no_run_behind(self):
+        command = [RUGA, "sweep", self.scene, *self.GRID, "-o", "map", "--jobs", "2", "--quiet"]
+
+        def runs():
+            found = 0
+            for name in glob.glob("/proc/[0-9]*/cmdline"):
+                try:
+                    with open(name, "rb") as file:
+                        words = file.read()
+                    found += b"\0run\0" in words and self.folder.encode() in words
+                except OSError:
+                    pass
+            return found
+
+        with subprocess.Popen(command, cwd=self.folder) as process:
+            end = time.monotonic() + 60
+            while not glob.glob(self.path("map/points/*.h5")) and time.monotonic() < end:
+                time.sleep(0.01)
+            self.assertGreater(runs(), 0)
+            process.kill()
+        while runs() and time.monotonic() < end:
+            time.sleep(0.05)
+        self.assertEqual(runs(), 0)
+        self.ruga(*command[1:])
+        self.assertEqual({row["error"] for row in self.rows()}, {""})
+
+    def test_a_point_starts_afresh_where_its_mesh_has_changed(self):
+        self.ruga("make", "sheet", "--size", "14cm,4cm", "--edge", "4.2mm", "-o", "sheet.obj")
+        made = "{make: {shape: sheet, size: [14 cm, 4 cm], edge: 4.2 mm}}"
+        self.scene = self.write("scene.yaml", SCENE.replace(made, "{file: sheet.obj}"))
+        self.sweep()
+        old = self.rows()
+        self.ruga("make", "sheet", "--size", "14cm,4cm", "--edge", "4mm", "-o", "sheet.obj")
+        self.assertIn("0 are complete already", self.sweep().stdout)
+        for before, after in zip(old, self.rows()):
+            self.assertEqual((before["result"], after["error"]), (after["result"], ""))
+            self.assertLess(float(before["edges_per_wavelength"]), float(after["edges_per_wavelength"]))
+
+    def test_bad_input_is_found_before_anything_is_run(self):
+        for word, saying in (("skin.young=[]", "no entries"), ("skin.yung=[1, 2]", "did you mean skin.young"),
+                             ("skin.young=[1 MPa, 2 mm]", "a length"), ("skin.young=[1 MPa, 1e6]", "the same scene"),
+                             ("skin.young=1 MPa", "gives a list"), ("mesh.make.size=[10 cm, 4 cm]", "gives a list"),
+                             ("skin.young=[1 MPa", "not valid YAML"), ("skin.young", "key="),
+                             ("=[1, 2]", "key=")):
+            self.refused("sweep", self.scene, "--set", word, "-o", "map", saying=saying)
+            self.assertFalse(os.path.exists(self.path("map")), word)
+        self.refused("sweep", self.scene, *self.GRID, "--set", "skin.young=1 MPa", "-o", "map", saying="given twice")
+        self.refused("sweep", self.scene, *self.GRID, saying="-o DIR is missing")
+        self.refused("sweep", self.scene, *self.GRID, "-o", self.scene, saying="is a file")
+
+    def test_a_point_that_fails_is_told_and_the_others_go_on(self):
+        done = self.sweep(grid=("--set", "skin.thickness=[0.1 mm, 2 mm]"), status=1)
+        self.assertIn("1 failed", done.stdout)
+        rows = self.rows()
+        self.assertRegex(rows[0]["error"], "edges per wrinkle wavelength")
+        self.assertEqual((rows[0]["status"], rows[0]["outcome"]), ("2", ""))
+        self.assertEqual((rows[1]["status"], rows[1]["error"]), ("0", ""))
+
+    def test_lists_of_lists_are_swept_where_the_key_takes_a_list(self):
+        done = self.ruga("sweep", self.scene, "--set", "mesh.make.size=[[14 cm, 4 cm], [10 cm, 4 cm]]", "--set",
+                         "time.frames=1", "-o", "map", "--json", "--quiet")
+        self.assertEqual(done.stderr, "")
+        table = json.loads(done.stdout)
+        self.assertEqual([p["mesh.make.size"] for p in table["points"]], ["[0.14, 0.04]", "[0.1, 0.04]"])
+        self.assertEqual((table["minimum"], table["failed"], table["not_run"]), (2, 0, 0))
 
 
 class Library(Case):

@@ -16,6 +16,7 @@
 sheet_def sheet_default(void) {
     return (sheet_def){.ratio = 1e3,
                        .poisson = 0.3,
+                       .thickness = 1e-3,
                        .length = 12,
                        .width = 3,
                        .edges = 10,
@@ -25,8 +26,13 @@ sheet_def sheet_default(void) {
                        .depth = 4};
 }
 
-static void fill_def(const sheet_def* def, ruga_model_def* model, double h, double* wavelength) {
-    model->skin.thickness = h;
+// With equal Poisson ratios.
+double sheet_wavelength(const sheet_def* def) {
+    return 2 * RUGA_PI * def->thickness * cbrt(def->ratio / 3);
+}
+
+static void fill_def(const sheet_def* def, ruga_model_def* model, double wavelength) {
+    model->skin.thickness = def->thickness;
     model->interior.young = 1e5;
     model->skin.young = def->ratio * model->interior.young;
     model->skin.poisson = model->interior.poisson = def->poisson;
@@ -43,9 +49,7 @@ static void fill_def(const sheet_def* def, ruga_model_def* model, double h, doub
                            : def->newton     ? RUGA_METHOD_NEWTON
                                              : RUGA_METHOD_QUASI_NEWTON;
     model->solver.linear = def->minres ? RUGA_LINEAR_MINRES : RUGA_LINEAR_DIRECT;
-    // eq. 3 with equal Poisson ratios
-    *wavelength = 2 * RUGA_PI * h * cbrt(def->ratio / 3);
-    model->lattice.depth = def->coupled ? def->depth * *wavelength : 0;
+    model->lattice.depth = def->coupled ? def->depth * wavelength : 0;
 }
 
 // The middle third in both directions.
@@ -182,9 +186,10 @@ ruga_status sheet_run(const sheet_def* def, sheet_frame* frames, double* wavelen
     ruga_model* model = NULL;
     ruga_keyframe_def keys[MAX_KEYS];
     ruga_model_def d = ruga_default_model_def();
-    *thickness = 1e-3;
+    *thickness = def->thickness;
+    *wavelength = sheet_wavelength(def);
     memset(frames, 0, (size_t)def->count * sizeof *frames);
-    fill_def(def, &d, *thickness, wavelength);
+    fill_def(def, &d, *wavelength);
     double e = 0.25 * pow(3 / def->ratio, 2.0 / 3), length = def->length * *wavelength;
     ruga_make_def make = {.shape = RUGA_SHAPE_SHEET,
                           .size = {length, def->width * *wavelength, 0},

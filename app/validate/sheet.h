@@ -11,6 +11,7 @@
 typedef struct sheet_def {
     double ratio;                // E_x / E_q
     double poisson;              // of both
+    double thickness;            // m
     double length, width, edges; // in wavelengths, and edges per wavelength
     int64_t seed;
     bool clusters, spectral, foundation, paper_rule, paper_method, newton, minres;
@@ -34,6 +35,8 @@ typedef struct sheet_frame {
 } sheet_frame;
 
 sheet_def sheet_default(void);
+// Eq. 3 for the sheet, m.
+double sheet_wavelength(const sheet_def* def);
 // frames [count], zero where not reached; theory out: wavelength in m, critical strain, and the thickness in
 // m.
 ruga_status sheet_run(const sheet_def* def, sheet_frame* frames, double* wavelength, double* critical,
