@@ -421,6 +421,19 @@ void ruga_mesh_vertex_areas(const ruga_mesh* mesh, double* area) {
     }
 }
 
+// From the first corner on, since (x + x + x) / 3 may differ from x in the last bit.
+void ruga_mesh_triangle_averages(const ruga_mesh* mesh, int components, const double* vertex, double* triangle) {
+    size_t n = (size_t)components;
+    for (size_t f = 0; f < (size_t)mesh->triangle_count; f++) {
+        const int* corner = mesh->triangle + 3 * f;
+        for (size_t c = 0; c < n; c++) {
+            double first = vertex[n * (size_t)corner[0] + c];
+            double further = (vertex[n * (size_t)corner[1] + c] - first) + (vertex[n * (size_t)corner[2] + c] - first);
+            triangle[n * f + c] = first + further / 3;
+        }
+    }
+}
+
 void ruga_mesh_vertex_normals(const ruga_mesh* mesh, const double* position, double* normal) {
     memset(normal, 0, 3 * (size_t)mesh->vertex_count * sizeof *normal);
     for (int f = 0; f < mesh->triangle_count; f++) {
