@@ -155,6 +155,10 @@ static ruga_status open_result(job* j) {
         .cluster_sigma = model->coupling.sigma,
         .cluster_radius = model->coupling.radius,
         .restart_doubles = ruga_state_restart_size(model),
+        .vertex_thickness = model->variation.thickness,
+        .vertex_young = model->variation.young,
+        .vertex_growth = model->variation.growth,
+        .vertex_wavelength = model->variation.wavelength,
     };
     RUGA_TRY(RUGA_NEW_ZERO(j->restart, header.restart_doubles));
     if (!j->continues) {
