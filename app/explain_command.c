@@ -87,7 +87,8 @@ static void say_wrinkles(const ruga_arguments* arguments, const facts* f) {
     if (isfinite(f->amplitude)) {
         char name[48];
         (void)snprintf(name, sizeof name, "amplitude at %.3g %% strain", 1e2 * f->strain);
-        ruga_say(arguments, "    %-28s %.4g mm\n", name, 1e3 * f->amplitude);
+        ruga_say(arguments, "    %-28s %.4g mm%s\n", name, 1e3 * f->amplitude,
+                 f->model->variation.wavelength ? ", of a skin of mean thickness and modulus" : "");
     } else {
         ruga_say(arguments, "    %-28s give --strain to know it\n", "amplitude");
     }

@@ -115,7 +115,7 @@ const ruga_key ruga_keys[] = {
           "is 1, and on beyond. So thickness: [0, 1 mm] takes it as a thickness in mm."),
     OTHER("skin.vary.N.texture", RUGA_KEY_TEXT, VARY(texture), "", NULL,
           "A greyscale PNG of 8 or 16 bits, relative to the scene file's folder, over the mesh's uv (0, 0 at the lower "
-          "left; held outside): the first value where it is black, the second where it is white."),
+          "left, of glTF at the upper left; held outside): the first value where it is black, the second where it is white."),
     PAIR("skin.vary.N.thickness", VARY(value[0]), "m", NOT_NEGATIVE, "Thickness."),
     PAIR("skin.vary.N.young", VARY(value[1]), "Pa", NOT_NEGATIVE, "Young's modulus."),
     PAIR("skin.vary.N.growth_u", VARY(value[2]), "1", NOT_NEGATIVE, "Growth along the skin's first direction."),

@@ -63,15 +63,24 @@ static ruga_status weigh_attribute(const job* j, const entry* e) {
     return RUGA_OK;
 }
 
+// glTF counts v from the upper edge of a picture, all other formats from the lower one.
+static bool counts_from_above(const ruga_scene* scene) {
+    const ruga_scene_parts* parts = scene->storage;
+    const char* dot = parts->source.file ? strrchr(parts->source.file, '.') : NULL;
+    return dot && (dot[1] == 'g' || dot[1] == 'G');
+}
+
 // A vertex on a seam takes the mean over its corners.
 static ruga_status sample_texture(const job* j, const entry* e, const ruga_texture* texture, int* corners) {
+    bool above = counts_from_above(j->scene);
     const ruga_mesh* mesh = &j->scene->mesh;
     memset(corners, 0, (size_t)mesh->vertex_count * sizeof *corners);
     memset(j->weight, 0, (size_t)mesh->vertex_count * sizeof *j->weight);
     for (size_t c = 0; c < 3 * (size_t)mesh->triangle_count; c++) {
         int u = mesh->uv_triangle[c], v = mesh->triangle[c];
         if (u >= 0) {
-            j->weight[v] += ruga_texture_at(texture, mesh->uv + 2 * (size_t)u);
+            const double* at = mesh->uv + 2 * (size_t)u;
+            j->weight[v] += ruga_texture_at(texture, (const double[]){at[0], above ? 1 - at[1] : at[1]});
             corners[v]++;
         }
     }

@@ -94,6 +94,18 @@ static void a_texture_maps_grey_between_its_two_values(void** state) {
     ruga_scene_clear(&scene);
 }
 
+// quad.gltf is a unit square whose uv are x and 1 - y, as glTF has it.
+static void a_texture_stands_upright_on_gltf_too(void** state) {
+    (void)state;
+    ruga_scene scene = read_scene("mesh: {file: quad.gltf, unit: m}\ninterior: none\n"
+                                  "skin: {vary: [{texture: ramp.png, thickness: [1 mm, 2 mm]}]}\n");
+    for (int v = 0; v < scene.mesh.vertex_count; v++) {
+        double grey = at(&scene, v)[1] > 0.5 ? 1 : at(&scene, v)[0] > 0.5 ? 0.8 : 0;
+        assert_near(scene.def.skin.vertex_thickness[v], 1e-3 * (1 + grey), 1e-9);
+    }
+    ruga_scene_clear(&scene);
+}
+
 static void attributes_and_textures_survive_remeshing(void** state) {
     (void)state;
     ruga_scene scene = read_scene("mesh: {file: vary.ply, unit: m, remesh: {edge: 3 cm}}\ninterior: none\n"
@@ -207,6 +219,7 @@ int main(void) {
         cmocka_unit_test(a_gradient_is_linear_and_held_outside),
         cmocka_unit_test(an_attribute_goes_on_beyond_its_two_values),
         cmocka_unit_test(a_texture_maps_grey_between_its_two_values),
+        cmocka_unit_test(a_texture_stands_upright_on_gltf_too),
         cmocka_unit_test(attributes_and_textures_survive_remeshing),
         cmocka_unit_test(the_hash_sees_what_attributes_and_textures_hold),
         cmocka_unit_test(attributes_survive_a_file),
