@@ -24,11 +24,12 @@ enum { FRAMES = 5, BINS = 400, WINDOWS = 7 };
 // lambda is the wavelength of the thinner or softer skin: 16 of them in its half are 8 of twice the length in the
 // other.
 static const double THICKNESS = 1e-3, RATIO = 1e3, INTERIOR = 1e5;
-static const double LENGTH = 32, WIDTH = 6; // lambda
+static const double LENGTH = 32, WIDTH = 6, QUICK_WIDTH = 3; // lambda
 static const double EDGES = 8;              // per lambda
 static const double strain[FRAMES] = {0.8, 1.2, 1.4, 1.6, 2}; // over the critical strain of the softer skin
 
-typedef enum variation { THICKNESS_STEP, THICKNESS_GRADIENT, MODULUS_STEP } variation;
+// FOUNDATION_GRADIENT is THICKNESS_GRADIENT without clusters.
+typedef enum variation { THICKNESS_STEP, THICKNESS_GRADIENT, MODULUS_STEP, FOUNDATION_GRADIENT } variation;
 
 typedef struct sheet {
     ruga_mesh mesh;
@@ -45,8 +46,12 @@ static double along(const sheet* s, int v) {
     return s->mesh.position[3 * (size_t)v] / s->length + 0.5;
 }
 
+static bool is_gradient(variation kind) {
+    return kind == THICKNESS_GRADIENT || kind == FOUNDATION_GRADIENT;
+}
+
 static double skin_at(variation kind, double t) {
-    return kind == THICKNESS_GRADIENT ? 1 + t : t < 0.5 ? 1 : 2;
+    return is_gradient(kind) ? 1 + t : t < 0.5 ? 1 : 2;
 }
 
 static void set_skin(variation kind, sheet* s, ruga_model_def* def) {
@@ -60,13 +65,13 @@ static void set_skin(variation kind, sheet* s, ruga_model_def* def) {
     def->skin.vertex_young = s->young;
 }
 
-static ruga_status build(variation kind, sheet* s) {
+static ruga_status build(variation kind, double width, sheet* s) {
     ruga_keyframe_def keys[FRAMES + 1];
     ruga_model_def def = ruga_default_model_def();
     double lambda = 2 * RUGA_PI * THICKNESS * cbrt(RATIO / 3), critical = 0.25 * pow(3 / RATIO, 2.0 / 3);
     s->length = LENGTH * lambda;
     ruga_make_def make = {
-        .shape = RUGA_SHAPE_SHEET, .size = {s->length, WIDTH * lambda, 0}, .edge = lambda / EDGES};
+        .shape = RUGA_SHAPE_SHEET, .size = {s->length, width * lambda, 0}, .edge = lambda / EDGES};
     RUGA_TRY(ruga_mesh_make(&make, &s->mesh));
     RUGA_TRY(RUGA_NEW(s->thickness, s->mesh.vertex_count));
     RUGA_TRY(RUGA_NEW(s->young, s->mesh.vertex_count));
@@ -76,6 +81,7 @@ static ruga_status build(variation kind, sheet* s) {
     def.interior.motion = RUGA_INTERIOR_PRESCRIBED;
     def.lattice.fill = RUGA_FILL_BOX;
     def.lattice.cells = (int)(LENGTH / 2);
+    def.coupling.kind = kind == FOUNDATION_GRADIENT ? RUGA_COUPLING_NONE : RUGA_COUPLING_CLUSTERS;
     set_skin(kind, s, &def);
     for (int k = 0; k <= FRAMES; k++) {
         keys[k] = ruga_default_keyframe_def();
@@ -259,13 +265,18 @@ static void state_halves(ruga_validation* v, variation kind, const sheet* s, dou
 }
 
 // Windows of five local wavelengths, evenly spread.
-static void state_windows(ruga_validation* v, const sheet* s, double times, FILE* table) {
+static void state_windows(ruga_validation* v, variation kind, const sheet* s, double times, FILE* table) {
     for (int i = 0; i < WINDOWS; i++) {
         char name[96];
         double first = 3.5 * eq3(THICKNESS_GRADIENT, 0) / s->length;
         double last = 1 - 3.5 * eq3(THICKNESS_GRADIENT, 1) / s->length;
         double t = first + (last - first) * i / (WINDOWS - 1), lambda = eq3(THICKNESS_GRADIENT, t);
         double x = (t - 0.5) * s->length, found = wavelength_in(s, x - 2.5 * lambda, x + 2.5 * lambda);
+        if (kind == FOUNDATION_GRADIENT) {
+            (void)snprintf(name, sizeof name, "no clusters, thickness %.2f h: wavelength at %.1f eps_c, m", 1 + t, times);
+            ruga_validation_record(v, name, found, lambda, "eq. 3 of the place");
+            continue;
+        }
         (void)snprintf(name, sizeof name, "gradient, thickness %.2f h: wavelength at %.1f eps_c, m", 1 + t, times);
         ruga_validation_near(v, name, found, lambda, 0.12, "eq. 3 of the place");
         if (table) {
@@ -300,7 +311,7 @@ static ruga_status run_sheet(ruga_validation* v, variation kind, const char* nam
     ruga_measured measured;
     char line[96], suffix[96], caption[160];
     int minima = 0;
-    RUGA_TRY_DONE(build(kind, &s));
+    RUGA_TRY_DONE(build(kind, ruga_validation_is_quick(v) ? QUICK_WIDTH : WIDTH, &s));
     RUGA_TRY_DONE(order_rows(&s));
     for (int k = 0; k < FRAMES; k++) {
         RUGA_TRY_DONE(ruga_state_step(s.model, s.state, &report));
@@ -310,9 +321,9 @@ static ruga_status run_sheet(ruga_validation* v, variation kind, const char* nam
         if (k == 0 && kind != MODULUS_STEP) {
             (void)snprintf(line, sizeof line, "%s: amplitude over thickness h at %.1f eps_c", name, strain[0]);
             ruga_validation_below(v, line, measured.amplitude / THICKNESS, 0.02, "no wrinkles below onset");
-        } else if (k != 2 && k != 3) {
-            if (kind == THICKNESS_GRADIENT) {
-                state_windows(v, &s, strain[k], table);
+        } else if (k == FRAMES - 1 || (k == 1 && kind != FOUNDATION_GRADIENT)) {
+            if (is_gradient(kind)) {
+                state_windows(v, kind, &s, strain[k], table);
             } else {
                 state_halves(v, kind, &s, strain[k]);
             }
@@ -332,6 +343,13 @@ done:
 static ruga_status run(ruga_validation* v) {
     char path[RUGA_VALIDATION_PATH];
     RUGA_TRY(run_sheet(v, THICKNESS_STEP, "step", NULL));
+    ruga_validation_note(v, "Amplitudes are for the record. Just above onset they hang on where exactly that is (4 %% later makes "
+                            "them 12 %% lower at 1.2 eps_c) and on the seed: with seed 2 the thick half is 23 %% low there. "
+                            "Uniform sheets of 8 x 3 and 8 x 6 wavelengths are 7 to 13 %% low at 1.2 eps_c and 3 to 6 %% at "
+                            "2 eps_c as well, one of 16 x 6 is 2 %% low and right: most of it is the short half, and not the step.");
+    if (ruga_validation_is_quick(v)) {
+        return RUGA_OK;
+    }
     ruga_validation_file(v, "gradient.csv", "gradient: wavelength along the sheet, ours and eq. 3", path);
     FILE* table = fopen(path, "w");
     if (table) {
@@ -342,7 +360,13 @@ static ruga_status run(ruga_validation* v) {
         (void)fclose(table);
     }
     RUGA_TRY(status);
-    return run_sheet(v, MODULUS_STEP, "modulus", NULL);
+    RUGA_TRY(run_sheet(v, MODULUS_STEP, "modulus", NULL));
+    RUGA_TRY(run_sheet(v, FOUNDATION_GRADIENT, "no-clusters", NULL));
+    ruga_validation_note(v, "Clusters alone would set the wavelength by their spacing. Without them the foundation must do "
+                            "it, and at 2 eps_c it does. Its tangential springs are soft, so that the skin slides and "
+                            "the thicker part, which pushes harder, is strained less: it wrinkles late. With a step and "
+                            "no clusters the thick half hardly wrinkles at 2 eps_c at all.");
+    return RUGA_OK;
 }
 
 const ruga_validation_case ruga_validate_vary = {
@@ -353,6 +377,6 @@ const ruga_validation_case ruga_validate_vary = {
              "grows linearly to twice its value; or the modulus doubles by a step, for the record. The critical strain "
              "eps_c, that of the softer skin, does not depend on the thickness. Wavelengths are centroids of spectra under a Hann window: over each half but for one "
              "of its wavelengths at either end, or over five local wavelengths.",
-    .quick = false,
+    .quick = true,
     .run = run,
 };
