@@ -68,8 +68,8 @@ static void say_key(const char* key, const char* value, const char* unit, bool g
 }
 
 static void say_variation(const ruga_arguments* arguments, const ruga_model* m) {
-    ruga_say(arguments, "    %-28s %.4g to %.4g mm, the value above is the mean over the area\n", "local wavelength",
-             1e3 * m->wavelength_min, 1e3 * m->wavelength_max);
+    ruga_say(arguments, "    %-28s %.4g to %.4g mm, the value above is the mean over the area\n",
+             "local wavelength", 1e3 * m->wavelength_min, 1e3 * m->wavelength_max);
     ruga_say(arguments, "    %-28s %.3g to %.3g %%\n", "local critical strain", 1e2 * m->critical_strain,
              1e2 * m->critical_strain_max);
 }
@@ -142,20 +142,24 @@ static json_t* facts_json(const facts* f) {
     json_t* warnings = ruga_json_texts(f->scene->warning_count, (const char* const*)f->scene->warning);
     json_t* wavelength = m->has_interior ? ruga_json_number(m->wavelength) : json_null();
     json_t* critical = m->has_interior ? ruga_json_number(m->critical_strain) : json_null();
-    json_t* range = m->variation.wavelength ? json_pack("[f, f]", m->wavelength_min, m->wavelength_max) : json_null();
-    json_t* strains =
-        m->variation.wavelength ? json_pack("[f, f]", m->critical_strain, m->critical_strain_max) : json_null();
+    json_t* range =
+        m->variation.wavelength ? json_pack("[f, f]", m->wavelength_min, m->wavelength_max) : json_null();
+    json_t* strains = m->variation.wavelength
+                          ? json_pack("[f, f]", m->critical_strain, m->critical_strain_max)
+                          : json_null();
     return json_pack(
-        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:i, s:o, s:o, "
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:i, s:o, "
+        "s:o, "
         "s:o, s:b}",
-        "keys", keys, "wavelength_range", range, "critical_strain_range", strains, "wavelength", wavelength, "critical_strain", critical, "strain",
-        ruga_json_number(f->strain), "amplitude", ruga_json_number(f->amplitude), "edges_per_wavelength",
-        ruga_json_number(f->edges), "mean_edge", ruga_json_number(m->mean_edge), "vertices",
-        m->mesh.vertex_count, "triangles", m->mesh.triangle_count, "clusters", m->clusters.count, "elements",
-        m->lattice.element_count, "superimposed", m->lattice.superimposed, "lattice_nodes",
-        m->lattice.node_count, "degrees_of_freedom", unknowns, "memory_bytes", ruga_json_number(e->bytes),
-        "frames", m->frames, "seconds_per_frame", ruga_json_number(e->seconds_per_frame), "seconds",
-        ruga_json_number(e->seconds_per_frame * m->frames), "warnings", warnings, "ok", !f->refused);
+        "keys", keys, "wavelength_range", range, "critical_strain_range", strains, "wavelength", wavelength,
+        "critical_strain", critical, "strain", ruga_json_number(f->strain), "amplitude",
+        ruga_json_number(f->amplitude), "edges_per_wavelength", ruga_json_number(f->edges), "mean_edge",
+        ruga_json_number(m->mean_edge), "vertices", m->mesh.vertex_count, "triangles", m->mesh.triangle_count,
+        "clusters", m->clusters.count, "elements", m->lattice.element_count, "superimposed",
+        m->lattice.superimposed, "lattice_nodes", m->lattice.node_count, "degrees_of_freedom", unknowns,
+        "memory_bytes", ruga_json_number(e->bytes), "frames", m->frames, "seconds_per_frame",
+        ruga_json_number(e->seconds_per_frame), "seconds", ruga_json_number(e->seconds_per_frame * m->frames),
+        "warnings", warnings, "ok", !f->refused);
 }
 
 // ---- the command ---------------------------------------------------------------------------------------

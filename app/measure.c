@@ -163,8 +163,8 @@ static ruga_status create_clusters(ruga_measure* m, double wavelength, const dou
             scale[v] = local[v] / wavelength;
         }
     }
-    ruga_status status = ruga_clusters_create_local(m->mesh, &m->connectivity, radius, sigma, scale, 0, seed,
-                                                    &m->clusters);
+    ruga_status status =
+        ruga_clusters_create_local(m->mesh, &m->connectivity, radius, sigma, scale, 0, seed, &m->clusters);
     ruga_release(scale);
     RUGA_TRY(status);
     for (int k = 0; k < m->clusters.start[m->clusters.count]; k++) {
@@ -177,8 +177,8 @@ ruga_status ruga_measure_create(const ruga_mesh* mesh, double wavelength, int64_
     return ruga_measure_create_local(mesh, wavelength, NULL, seed, out);
 }
 
-ruga_status ruga_measure_create_local(const ruga_mesh* mesh, double wavelength, const double* local, int64_t seed,
-                                      ruga_measure** out) {
+ruga_status ruga_measure_create_local(const ruga_mesh* mesh, double wavelength, const double* local,
+                                      int64_t seed, ruga_measure** out) {
     ruga_status status = RUGA_OK;
     ruga_measure* m = NULL;
     *out = NULL;

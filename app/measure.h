@@ -15,8 +15,8 @@ typedef struct ruga_measure ruga_measure;
 ruga_status ruga_measure_create(const ruga_mesh* mesh, double wavelength, int64_t seed,
                                 ruga_measure** measure);
 // The same with clusters of the local wavelengths [V], whose mean is `wavelength`; local NULL: as above.
-ruga_status ruga_measure_create_local(const ruga_mesh* mesh, double wavelength, const double* local, int64_t seed,
-                                      ruga_measure** measure);
+ruga_status ruga_measure_create_local(const ruga_mesh* mesh, double wavelength, const double* local,
+                                      int64_t seed, ruga_measure** measure);
 void ruga_measure_destroy(ruga_measure** measure);
 
 typedef struct ruga_measured {

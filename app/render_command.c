@@ -70,7 +70,8 @@ static ruga_status choose_value(job* j, int color) {
     static const char* const names[] = {"thickness", "Young's modulus", "wavelength"};
     static const char* const units[] = {"m", "Pa", "m"};
     const ruga_result_header* header = ruga_result_reader_header(j->reader);
-    const double* const values[] = {header->vertex_thickness, header->vertex_young, header->vertex_wavelength};
+    const double* const values[] = {header->vertex_thickness, header->vertex_young,
+                                    header->vertex_wavelength};
     int which = color - COLOR_DISPLACEMENT - 1;
     if (!values[which]) {
         return ruga_fail(RUGA_BAD_INPUT, "--color: the %s of the skin in %s does not vary", names[which],
@@ -83,8 +84,8 @@ static ruga_status choose_value(job* j, int color) {
         j->def.scalar_min = fmin(j->def.scalar_min, values[which][v]);
         j->def.scalar_max = fmax(j->def.scalar_max, values[which][v]);
     }
-    ruga_say(j->arguments, "colours from %.4g %s to %.4g %s\n", j->def.scalar_min, units[which], j->def.scalar_max,
-             units[which]);
+    ruga_say(j->arguments, "colours from %.4g %s to %.4g %s\n", j->def.scalar_min, units[which],
+             j->def.scalar_max, units[which]);
     return RUGA_OK;
 }
 
@@ -108,7 +109,8 @@ static ruga_status prepare(job* j, const ruga_frame_range* range) {
     RUGA_TRY(choose_camera(j));
     RUGA_TRY(ruga_integer(j->arguments, "--width", 16, PIXELS_MAX, &j->def.width));
     RUGA_TRY(ruga_integer(j->arguments, "--height", 16, PIXELS_MAX, &j->def.height));
-    RUGA_TRY(ruga_option_choice(j->arguments, "--color", "clay|displacement|thickness|young|wavelength", &color));
+    RUGA_TRY(
+        ruga_option_choice(j->arguments, "--color", "clay|displacement|thickness|young|wavelength", &color));
     const ruga_mesh* mesh = ruga_result_mesh(j->reader);
     const ruga_result_header* header = ruga_result_reader_header(j->reader);
     RUGA_TRY(RUGA_NEW(j->position, 3 * (size_t)mesh->vertex_count));

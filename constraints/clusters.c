@@ -6,8 +6,8 @@
 //     alpha_i = w exp(-d_i^2 / (2 sigma^2)) where d_i < 2 sigma, 0 elsewhere, w such that sum_i alpha_i = 1.
 // Centres are chosen greedily, always the vertex that is farthest from those chosen. An update walks only
 // over vertices that come closer to a centre by it: a shortest path to such a vertex runs over such vertices
-// alone. Where the wavelength varies, the path that chooses centres is measured in local wavelengths: an edge counts
-// as |e| over the mean scale of its ends.
+// alone. Where the wavelength varies, the path that chooses centres is measured in local wavelengths: an edge
+// counts as |e| over the mean scale of its ends.
 #include "constraints/clusters.h"
 
 #include "core/memory.h"
@@ -251,9 +251,9 @@ ruga_status ruga_clusters_create(const ruga_mesh* mesh, const ruga_connectivity*
     return ruga_clusters_create_local(mesh, connectivity, radius, sigma, NULL, count, seed, clusters);
 }
 
-ruga_status ruga_clusters_create_local(const ruga_mesh* mesh, const ruga_connectivity* connectivity, double radius,
-                                       double sigma, const double* scale, int count, int64_t seed,
-                                       ruga_clusters* clusters) {
+ruga_status ruga_clusters_create_local(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                       double radius, double sigma, const double* scale, int count,
+                                       int64_t seed, ruga_clusters* clusters) {
     ruga_status status = RUGA_OK;
     builder b = {.connectivity = connectivity};
     double* row_distance = NULL;

@@ -4,8 +4,9 @@
 // Pasternak foundation. With A_i the lumped area of vertex i and w_e the cotangent weight of edge e = (i, j):
 //     E = 1/2 sum_i a A_i |d_i|^2 + 1/2 sum_e b w_e |d_i - d_j|^2,
 //     gradient_i = a A_i d_i + sum_j b w_ij (d_i - d_j).
-// Where b varies, b w_e is the sum over the two triangles beside e of b (mean of the corners) times its cotangent / 2.
-// A displacement A sin(k x) of a flat sheet along its normal has the energy (a + b k^2) A^2 / 4 per area.
+// Where b varies, b w_e is the sum over the two triangles beside e of b (mean of the corners) times its
+// cotangent / 2. A displacement A sin(k x) of a flat sheet along its normal has the energy (a + b k^2) A^2 /
+// 4 per area.
 #include "constraints/foundation.h"
 
 #include "constraints/laplacian.h"
@@ -85,7 +86,8 @@ ruga_status ruga_foundation_create(const ruga_mesh* mesh, const ruga_connectivit
 ruga_status ruga_foundation_create_local(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
                                          const double* a, const double* b, ruga_foundation* foundation) {
     ruga_status status = RUGA_OK;
-    *foundation = (ruga_foundation){.vertex_count = mesh->vertex_count, .edge_count = connectivity->edge_count};
+    *foundation =
+        (ruga_foundation){.vertex_count = mesh->vertex_count, .edge_count = connectivity->edge_count};
     RUGA_TRY_DONE(RUGA_NEW(foundation->local_spring, mesh->vertex_count));
     memcpy(foundation->local_spring, a, (size_t)mesh->vertex_count * sizeof *a);
     RUGA_TRY_DONE(fill(mesh, connectivity, 0, b, foundation));

@@ -3,8 +3,8 @@
 //
 // The interior's response to what the lattice cannot represent: energy 1/2 d^T W d, W = a M + b L, of
 // d = x - Bq, M lumped areas, L cotangent Laplacian, of the rest shape; a = E*_q k/4, b = E*_q/(4k),
-// k = 2 pi/lambda: the half-space's E*_q k/2 and its slope at the critical wave number. Where lambda varies, a is that
-// of each vertex and b the mean of each triangle's corners: W stays symmetric and positive.
+// k = 2 pi/lambda: the half-space's E*_q k/2 and its slope at the critical wave number. Where lambda varies,
+// a is that of each vertex and b the mean of each triangle's corners: W stays symmetric and positive.
 #ifndef RUGA_CONSTRAINTS_FOUNDATION_H
 #define RUGA_CONSTRAINTS_FOUNDATION_H
 

@@ -28,7 +28,8 @@ ruga_status ruga_laplacian_weights_scaled(const ruga_mesh* mesh, const ruga_conn
                 return ruga_fail(RUGA_BAD_MESH,
                                  "face %d has no area: its corners lie on a line; remove it or remesh", t);
             }
-            weight[connectivity->triangle_edge[t][j]] += (triangle_b ? triangle_b[t] : 1) * (0.5 * cosine / sine);
+            weight[connectivity->triangle_edge[t][j]] +=
+                (triangle_b ? triangle_b[t] : 1) * (0.5 * cosine / sine);
         }
     }
     return RUGA_OK;

@@ -2,10 +2,10 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // PLY, text and binary of both byte orders. Used are the elements vertex (x y z, and s t, u v or
-// texture_u texture_v) and face (vertex_indices or vertex_index, texcoord: u v of each corner, group). Any other
-// single number of a vertex but its normal is an attribute of the mesh by its name; all other elements and
-// properties are read over. Corners at the same vertex with equal texcoords share one uv.
-// Groups, for which PLY has no word, are face property "group", a number into comments "ruga_group NAME".
+// texture_u texture_v) and face (vertex_indices or vertex_index, texcoord: u v of each corner, group). Any
+// other single number of a vertex but its normal is an attribute of the mesh by its name; all other elements
+// and properties are read over. Corners at the same vertex with equal texcoords share one uv. Groups, for
+// which PLY has no word, are face property "group", a number into comments "ruga_group NAME".
 #include "core/memory.h"
 #include "io/bytes.h"
 #include "io/mesh_file.h"
@@ -592,7 +592,8 @@ ruga_status ruga_ply_write(const char* path, const ruga_mesh* mesh, const double
                 put_doubles(&writer, mesh->uv + 2 * (size_t)vertex_uv[v], 2);
             }
             if (mesh->attribute_count > 0) {
-                put_doubles(&writer, mesh->attribute + (size_t)mesh->attribute_count * v, mesh->attribute_count);
+                put_doubles(&writer, mesh->attribute + (size_t)mesh->attribute_count * v,
+                            mesh->attribute_count);
             }
         }
         write_faces(&writer, mesh, face_uv);

@@ -147,8 +147,8 @@ static bool put_mesh(hid_t file, const ruga_mesh* mesh, const int* source_vertex
 }
 
 static bool put_column(hid_t file, const char* name, int rows, const double* data) {
-    return !data || ruga_hdf5_put_array(file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, (hsize_t[]){(hsize_t)rows},
-                                        data);
+    return !data || ruga_hdf5_put_array(file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1,
+                                        (hsize_t[]){(hsize_t)rows}, data);
 }
 
 static bool put_skin(hid_t file, const ruga_result_header* header) {

@@ -221,8 +221,8 @@ static ruga_status get_mesh(ruga_hdf5* hdf5, hid_t file, ruga_mesh* mesh) {
 }
 
 // Numbers of the vertices, all above 0; NULL where the file has none.
-static ruga_status get_skin_values(ruga_hdf5* hdf5, const ruga_result_reader* reader, const char* name, int columns,
-                                   double** values) {
+static ruga_status get_skin_values(ruga_hdf5* hdf5, const ruga_result_reader* reader, const char* name,
+                                   int columns, double** values) {
     int rows;
     if (!exists(reader->file, "/mesh", name)) {
         return RUGA_OK;
@@ -233,8 +233,10 @@ static ruga_status get_skin_values(ruga_hdf5* hdf5, const ruga_result_reader* re
         ok = (*values)[i] > 0 && isfinite((*values)[i]);
     }
     return ok ? RUGA_OK
-              : ruga_fail(RUGA_BAD_INPUT, "%s: %s has another length than the mesh, or a value that is not above 0: "
-                          "the file is damaged", hdf5->path, name);
+              : ruga_fail(RUGA_BAD_INPUT,
+                          "%s: %s has another length than the mesh, or a value that is not above 0: "
+                          "the file is damaged",
+                          hdf5->path, name);
 }
 
 static ruga_status get_skin(ruga_hdf5* hdf5, ruga_result_reader* reader) {

@@ -100,8 +100,8 @@ static ruga_status drop_unused_vertices(ruga_mesh* mesh, int* dropped) {
         if (fresh[v]) {
             memmove(mesh->position + 3 * (size_t)count, mesh->position + 3 * (size_t)v, 3 * sizeof(double));
             if (attributes > 0) {
-                memmove(mesh->attribute + attributes * (size_t)count, mesh->attribute + attributes * (size_t)v,
-                        attributes * sizeof(double));
+                memmove(mesh->attribute + attributes * (size_t)count,
+                        mesh->attribute + attributes * (size_t)v, attributes * sizeof(double));
             }
             source[count] = mesh->source_vertex ? mesh->source_vertex[v] : v;
             fresh[v] = count++;

@@ -25,7 +25,8 @@ typedef struct ruga_scene_parts {
     int warning_capacity;
 } ruga_scene_parts;
 
-// Every key by itself: kind, dimension, range, default. Fills def (without its mesh), source, vary and values.
+// Every key by itself: kind, dimension, range, default. Fills def (without its mesh), source, vary and
+// values.
 ruga_status ruga_scene_read_keys(const ruga_yaml_node* root, ruga_scene_parts* parts, ruga_model_def* def);
 
 // What keys demand of one another; sets the kinds of handles and regions.

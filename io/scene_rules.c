@@ -201,10 +201,11 @@ static ruga_status check_vary(const ruga_yaml_node* node, const char* shown, rug
         const ruga_yaml_node* value = ruga_yaml_find(node, values[i]);
         count += value != NULL;
         if (value && vary->value[i].count != (graded ? 2 : 1)) {
-            return ruga_yaml_fail(value, shown,
-                                  graded ? "%s needs two values here: [first, second] of the %s"
-                                         : "%s takes one value in a region; two go with gradient, attribute or texture",
-                                  values[i], graded ? grades[which] : "");
+            return ruga_yaml_fail(
+                value, shown,
+                graded ? "%s needs two values here: [first, second] of the %s"
+                       : "%s takes one value in a region; two go with gradient, attribute or texture",
+                values[i], graded ? grades[which] : "");
         }
     }
     return count > 0 ? RUGA_OK

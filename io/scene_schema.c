@@ -50,7 +50,7 @@
     OTHER(path ".group", RUGA_KEY_TEXT, IN_ENTRY(region.group), "", NULL, "The faces of a group of the mesh."), \
     OTHER(path ".vertices", RUGA_KEY_VERTICES, IN_ENTRY(region), "", NULL, \
           "Vertices by their number in the file, from 0; for a made shape, of the mesh itself."), \
-    OTHER(path ".all", RUGA_KEY_EVERY, -1, "", NULL, "true: everything."),
+    OTHER(path ".all", RUGA_KEY_EVERY, -1, "", NULL, "true: everything.")
 // clang-format on
 
 const ruga_key ruga_keys[] = {
@@ -99,26 +99,29 @@ const ruga_key ruga_keys[] = {
     NUMBER("skin.relaxation", MODEL(skin.relaxation), "s", "20 ms", POSITIVE,
            "Relaxation time of damped motion."),
     ENTRIES("skin.vary", "(none)",
-            "Where the skin differs from the values above: each entry with a region, or one of gradient, attribute, "
-            "texture (in a region, or everywhere), and with one or more of thickness, young, growth_u, growth_v. Of "
-            "several at one place the last counts. Values belong to vertices and are linear in between."),
+            "Where the skin differs from the values above: each entry with a region, or one of gradient, "
+            "attribute, texture (in a region, or everywhere), and with one or more of thickness, young, "
+            "growth_u, growth_v. Of several at one place the last counts. Values belong to vertices and "
+            "are linear in between."),
     SECTION("skin.vary.N.region", NULL,
-            "A part of the rest shape, as in handles; there each value is one number, unless one of the three below "
-            "says how far it is from its first to its second."),
-    REGION("skin.vary.N.region", VARY)
+            "A part of the rest shape, as in handles; there each value is one number, unless one of the "
+            "three below says how far it is from its first to its second."),
+    REGION("skin.vary.N.region", VARY),
     SECTION("skin.vary.N.gradient", NULL,
             "From the first value to the second along a straight line, held before and behind it."),
     NUMBERS("skin.vary.N.gradient.from", 3, VARY(from), "m", REQUIRED, ANY, "Where the first value holds."),
     NUMBERS("skin.vary.N.gradient.to", 3, VARY(to), "m", REQUIRED, ANY, "Where the second value holds."),
     OTHER("skin.vary.N.attribute", RUGA_KEY_TEXT, VARY(attribute), "", NULL,
-          "A property of the vertices of a .ply file by its name: the first value where it is 0, the second where it "
-          "is 1, and on beyond. So thickness: [0, 1 mm] takes it as a thickness in mm."),
+          "A property of the vertices of a .ply file by its name: the first value where it is 0, the "
+          "second where it is 1, and on beyond. So thickness: [0, 1 mm] takes it as a thickness in mm."),
     OTHER("skin.vary.N.texture", RUGA_KEY_TEXT, VARY(texture), "", NULL,
-          "A greyscale PNG of 8 or 16 bits, relative to the scene file's folder, over the mesh's uv (0, 0 at the lower "
-          "left, of glTF at the upper left; held outside): the first value where it is black, the second where it is white."),
+          "A greyscale PNG of 8 or 16 bits, relative to the scene file's folder, over the mesh's uv (0, 0 "
+          "at the lower left, of glTF at the upper left; held outside): the first value where it is black, "
+          "the second where it is white."),
     PAIR("skin.vary.N.thickness", VARY(value[0]), "m", NOT_NEGATIVE, "Thickness."),
     PAIR("skin.vary.N.young", VARY(value[1]), "Pa", NOT_NEGATIVE, "Young's modulus."),
-    PAIR("skin.vary.N.growth_u", VARY(value[2]), "1", NOT_NEGATIVE, "Growth along the skin's first direction."),
+    PAIR("skin.vary.N.growth_u", VARY(value[2]), "1", NOT_NEGATIVE,
+         "Growth along the skin's first direction."),
     PAIR("skin.vary.N.growth_v", VARY(value[3]), "1", NOT_NEGATIVE, "Growth across it."),
 
     SECTION("interior", "{}", "The solid inside, or the word none for a free shell."),
@@ -195,7 +198,7 @@ const ruga_key ruga_keys[] = {
     SECTION("handles.N.region", REQUIRED,
             "A part of the rest shape, in metres after `unit` and `scale`: one of the keys below, or the "
             "word all."),
-    REGION("handles.N.region", HANDLE)
+    REGION("handles.N.region", HANDLE),
     OTHER("handles.N.fix", RUGA_KEY_AXES, HANDLE(axes), "", NULL,
           "The region keeps its rest position: true, or only along these of [x, y, z]."),
     SECTION("handles.N.move", NULL, "The region is rotated, then translated."),

@@ -71,7 +71,8 @@ typedef struct ruga_key {
     const char* path; // "skin.thickness", "handles.N.region.box"
     ruga_key_kind kind;
     int count;
-    int offset; // bytes in ruga_scene_source, _scene_vary, _handle_def, _keyframe_def or _model_def; -1 = none
+    int offset; // bytes in ruga_scene_source, _scene_vary, _handle_def, _keyframe_def or _model_def; -1 =
+                // none
     const char* dimension; // "" where it is no quantity
     // In YAML. NULL: none, the key chooses or must be given. In parentheses: what its absence means, in
     // words. A section with a default of {} is always there, with the defaults of its keys.

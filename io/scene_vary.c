@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// skin.vary to values at the vertices of the mesh that is simulated. An entry sets (1 - t) first + t second on the
-// vertices of its region, with t = 0 where there is a region alone, t in [0, 1] along a gradient or in a texture, and
-// t the number itself of an attribute.
+// skin.vary to values at the vertices of the mesh that is simulated. An entry sets (1 - t) first + t second
+// on the vertices of its region, with t = 0 where there is a region alone, t in [0, 1] along a gradient or in
+// a texture, and t the number itself of an attribute.
 #include "constraints/attachments.h"
 #include "core/memory.h"
 #include "core/vec3.h"
@@ -17,9 +17,10 @@
 typedef struct job {
     ruga_scene* scene;
     const char* directory;
-    double* array[RUGA_VARY_VALUES]; // [V] first entry of thickness, young and the two of growth; NULL = uniform
-    int* selected;                   // [V] of the entry at hand
-    double* weight;                  // [V] its t
+    double*
+        array[RUGA_VARY_VALUES]; // [V] first entry of thickness, young and the two of growth; NULL = uniform
+    int* selected;               // [V] of the entry at hand
+    double* weight;              // [V] its t
 } job;
 
 // An entry with its place in the file.
@@ -52,10 +53,11 @@ static ruga_status weigh_attribute(const job* j, const entry* e) {
         char list[400] = "none (only .ply files have them)";
         for (int i = 0; i < mesh->attribute_count; i++) {
             size_t used = i == 0 ? 0 : strlen(list);
-            (void)snprintf(list + used, sizeof list - used, "%s%s", i == 0 ? "" : ", ", mesh->attribute_name[i]);
+            (void)snprintf(list + used, sizeof list - used, "%s%s", i == 0 ? "" : ", ",
+                           mesh->attribute_name[i]);
         }
-        return ruga_yaml_fail(node, e->shown, "the mesh has no attribute '%.60s'; it has %s", e->vary->attribute,
-                              list);
+        return ruga_yaml_fail(node, e->shown, "the mesh has no attribute '%.60s'; it has %s",
+                              e->vary->attribute, list);
     }
     for (int v = 0; v < mesh->vertex_count; v++) {
         j->weight[v] = mesh->attribute[(size_t)mesh->attribute_count * (size_t)v + (size_t)a];
@@ -88,7 +90,8 @@ static ruga_status sample_texture(const job* j, const entry* e, const ruga_textu
         const double* x = mesh->position + 3 * (size_t)v;
         if (corners[v] == 0) {
             return ruga_yaml_fail(ruga_yaml_find(e->node, "texture"), e->shown,
-                                  "vertex %d at (%.4g, %.4g, %.4g) m has no texture coordinates", v, x[0], x[1], x[2]);
+                                  "vertex %d at (%.4g, %.4g, %.4g) m has no texture coordinates", v, x[0],
+                                  x[1], x[2]);
         }
         j->weight[v] /= corners[v];
     }
@@ -175,7 +178,8 @@ static ruga_status apply(const job* j, const entry* e) {
     return RUGA_OK;
 }
 
-// An array for each quantity that some entry sets, filled with the skin's own value; growth has both components.
+// An array for each quantity that some entry sets, filled with the skin's own value; growth has both
+// components.
 static ruga_status take_arrays(job* j) {
     ruga_scene_parts* parts = j->scene->storage;
     ruga_skin_def* skin = &j->scene->def.skin;

@@ -12,12 +12,13 @@ typedef struct ruga_texture {
     double* value; // [height][width] from the top, 0 = black, 1 = white
 } ruga_texture;
 
-// A PNG in shades of grey, of up to 16 bits and any gamma: its numbers are taken as they stand. RUGA_BAD_INPUT where
-// it is missing, damaged, or in colour.
+// A PNG in shades of grey, of up to 16 bits and any gamma: its numbers are taken as they stand.
+// RUGA_BAD_INPUT where it is missing, damaged, or in colour.
 ruga_status ruga_texture_read(const char* path, ruga_texture* texture);
 void ruga_texture_clear(ruga_texture* texture);
 
-// Bilinear between the middles of pixels; (0, 0) is the lower left corner, (1, 1) the upper right; held outside.
+// Bilinear between the middles of pixels; (0, 0) is the lower left corner, (1, 1) the upper right; held
+// outside.
 double ruga_texture_at(const ruga_texture* texture, const double uv[2]);
 
 #endif

@@ -71,8 +71,8 @@ ruga_status ruga_mesh_allocate_attributes(const ruga_mesh* source, ruga_mesh* me
         return RUGA_OK;
     }
     mesh->attribute_count = source->attribute_count;
-    RUGA_TRY(
-        copy_names((const char* const*)source->attribute_name, source->attribute_count, &mesh->attribute_name));
+    RUGA_TRY(copy_names((const char* const*)source->attribute_name, source->attribute_count,
+                        &mesh->attribute_name));
     return RUGA_NEW(mesh->attribute, (size_t)mesh->attribute_count * (size_t)mesh->vertex_count);
 }
 
@@ -275,8 +275,8 @@ static ruga_status extract_vertices(const ruga_mesh* mesh, const int* number, ru
                    3 * sizeof(double));
             part->source_vertex[number[v]] = mesh->source_vertex ? mesh->source_vertex[v] : v;
             if (attributes > 0) {
-                memcpy(part->attribute + attributes * (size_t)number[v], mesh->attribute + attributes * (size_t)v,
-                       attributes * sizeof *part->attribute);
+                memcpy(part->attribute + attributes * (size_t)number[v],
+                       mesh->attribute + attributes * (size_t)v, attributes * sizeof *part->attribute);
             }
         }
     }
@@ -454,13 +454,15 @@ void ruga_mesh_vertex_areas(const ruga_mesh* mesh, double* area) {
 }
 
 // From the first corner on, since (x + x + x) / 3 may differ from x in the last bit.
-void ruga_mesh_triangle_averages(const ruga_mesh* mesh, int components, const double* vertex, double* triangle) {
+void ruga_mesh_triangle_averages(const ruga_mesh* mesh, int components, const double* vertex,
+                                 double* triangle) {
     size_t n = (size_t)components;
     for (size_t f = 0; f < (size_t)mesh->triangle_count; f++) {
         const int* corner = mesh->triangle + 3 * f;
         for (size_t c = 0; c < n; c++) {
             double first = vertex[n * (size_t)corner[0] + c];
-            double further = (vertex[n * (size_t)corner[1] + c] - first) + (vertex[n * (size_t)corner[2] + c] - first);
+            double further =
+                (vertex[n * (size_t)corner[1] + c] - first) + (vertex[n * (size_t)corner[2] + c] - first);
             triangle[n * f + c] = first + further / 3;
         }
     }

@@ -51,9 +51,10 @@ double ruga_mesh_volume(const ruga_mesh* mesh);
 double ruga_mesh_mean_edge(const ruga_mesh* mesh);
 // One third of the area of the triangles around each vertex, area [V].
 void ruga_mesh_vertex_areas(const ruga_mesh* mesh, double* area);
-// Mean of each triangle's three corners: vertex [V][components] to triangle [F][components]. Equal values keep their
-// bits.
-void ruga_mesh_triangle_averages(const ruga_mesh* mesh, int components, const double* vertex, double* triangle);
+// Mean of each triangle's three corners: vertex [V][components] to triangle [F][components]. Equal values
+// keep their bits.
+void ruga_mesh_triangle_averages(const ruga_mesh* mesh, int components, const double* vertex,
+                                 double* triangle);
 // Area-weighted unit normals at given positions [V][3]; normal [V][3].
 void ruga_mesh_vertex_normals(const ruga_mesh* mesh, const double* position, double* normal);
 // 64-bit FNV-1a hash of positions and triangles.

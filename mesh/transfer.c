@@ -9,7 +9,8 @@
 // is the prediction. So each new face lies within one chart, continued past the seam where it overhangs, and
 // vertices away from seams have one uv. Agreement: within half an edge, measured in uv.
 //
-// Attributes have no charts: a new vertex takes those of the nearest point of the old surface, linear in its face.
+// Attributes have no charts: a new vertex takes those of the nearest point of the old surface, linear in its
+// face.
 #include "mesh/transfer.h"
 
 #include "core/memory.h"

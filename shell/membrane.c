@@ -55,8 +55,8 @@ double ruga_membrane_grown_length(const double* const x[3], const double edge[3]
     return hypot(growth[0] * ruga_dot(edge, u), growth[1] * ruga_dot(edge, v));
 }
 
-double ruga_membrane_rest_create(const double* const x[3], double poisson, const double growth[2], double thickness,
-                                 double young, ruga_membrane_rest* rest) {
+double ruga_membrane_rest_create(const double* const x[3], double poisson, const double growth[2],
+                                 double thickness, double young, ruga_membrane_rest* rest) {
     double u[3], v[3], e1[3], e2[3];
     double area = plane_axes(x, u, v);
     double longest =

@@ -144,11 +144,13 @@ static ruga_status set_triangles(ruga_shell* shell, const ruga_mesh* mesh,
         }
         const double *x[3], *growth = growth_of(material, f);
         if (!(growth[0] > 0 && growth[1] > 0) || !isfinite(growth[0] * growth[1])) {
-            return fail_at_face(RUGA_BAD_INPUT, mesh, f, "has a growth that is not above 0: 1 leaves lengths alone");
+            return fail_at_face(RUGA_BAD_INPUT, mesh, f,
+                                "has a growth that is not above 0: 1 leaves lengths alone");
         }
         memcpy(shell->triangle[f], mesh->triangle + 3 * (size_t)f, sizeof shell->triangle[f]);
         corners(shell->triangle[f], mesh->position, x);
-        area[f] = ruga_membrane_rest_create(x, material->skin.poisson, growth, h, young, &shell->triangle_rest[f]);
+        area[f] =
+            ruga_membrane_rest_create(x, material->skin.poisson, growth, h, young, &shell->triangle_rest[f]);
         if (area[f] == 0) {
             return fail_at_face(RUGA_BAD_MESH, mesh, f, "has no area: delete or collapse it, or remesh");
         }

@@ -12,8 +12,8 @@
 
 typedef struct ruga_shell ruga_shell;
 
-// Material of each triangle: arrays [F], or NULL to use the skin's single value. The arrays over vertices of the
-// skin's def are not looked at: ruga_mesh_triangle_averages makes triangles' values of them.
+// Material of each triangle: arrays [F], or NULL to use the skin's single value. The arrays over vertices of
+// the skin's def are not looked at: ruga_mesh_triangle_averages makes triangles' values of them.
 typedef struct ruga_shell_material {
     ruga_skin_def skin;
     const double* thickness; // [F] m, or NULL

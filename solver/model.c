@@ -26,7 +26,8 @@ static bool positive(double value) {
 static ruga_status check_material(const ruga_model_def* def) {
     const ruga_skin_def* s = &def->skin;
     const ruga_interior_def* q = &def->interior;
-    RUGA_TRY(require(s->vertex_thickness || positive(s->thickness), "skin.thickness", s->thickness, "above 0"));
+    RUGA_TRY(
+        require(s->vertex_thickness || positive(s->thickness), "skin.thickness", s->thickness, "above 0"));
     RUGA_TRY(require(s->vertex_young || positive(s->young), "skin.young", s->young, "above 0"));
     RUGA_TRY(require(s->poisson > -1 && s->poisson < 0.5, "skin.poisson", s->poisson, "between -1 and 0.5"));
     RUGA_TRY(require(s->density >= 0 && isfinite(s->density), "skin.density", s->density, "0 or above"));
@@ -195,7 +196,8 @@ static ruga_status build_clusters(ruga_model* model) {
     c->sigma = c->sigma > 0 ? c->sigma : sigma;
     RUGA_TRY(ruga_progress("placing clusters", 0));
     RUGA_TRY(ruga_clusters_create_local(&model->mesh, &model->connectivity, c->radius, c->sigma,
-                                        model->variation.scale, c->count, model->solver.seed, &model->clusters));
+                                        model->variation.scale, c->count, model->solver.seed,
+                                        &model->clusters));
     c->count = model->clusters.count;
     if (c->kind == RUGA_COUPLING_SPECTRAL) {
         ruga_clusters_clear(&model->clusters);
@@ -240,8 +242,8 @@ static ruga_status build_foundation(ruga_model* model) {
     if (model->variation.wavelength) {
         return build_local_foundation(model, modulus);
     }
-    return ruga_foundation_create(&model->mesh, &model->connectivity, model->foundation_a, model->foundation_b,
-                                  &model->foundation);
+    return ruga_foundation_create(&model->mesh, &model->connectivity, model->foundation_a,
+                                  model->foundation_b, &model->foundation);
 }
 
 static ruga_status build_coupling(ruga_model* model) {
@@ -252,10 +254,11 @@ static ruga_status build_coupling(ruga_model* model) {
         return RUGA_OK;
     }
     if (model->edges < 3 && !model->solver.allow_coarse) {
-        return ruga_fail(RUGA_BAD_INPUT,
-                         "the mesh has %.2g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
-                         "least 3 are needed and 8 are good: remesh with edge %.3g m, or set solver.allow_coarse",
-                         model->edges, model->mean_edge, model->edges_wavelength, model->edges_wavelength / 8);
+        return ruga_fail(
+            RUGA_BAD_INPUT,
+            "the mesh has %.2g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
+            "least 3 are needed and 8 are good: remesh with edge %.3g m, or set solver.allow_coarse",
+            model->edges, model->mean_edge, model->edges_wavelength, model->edges_wavelength / 8);
     }
     if (c->kind != RUGA_COUPLING_NONE) {
         RUGA_TRY(build_clusters(model));

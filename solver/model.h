@@ -47,11 +47,12 @@ struct ruga_model {
     ruga_handle_def* handles; // with copies of names and vertex lists
     ruga_loads* loads;
 
-    double wavelength, critical_strain; // 0 without an interior; the mean and the smallest where the skin varies
+    // m and 1, 0 without an interior; where the skin varies the mean over the area, and the smallest.
+    double wavelength, critical_strain;
     double wavelength_min, wavelength_max, critical_strain_max;
-    double edges;                       // per wavelength, at the worst place; 0 without an interior
-    double edges_wavelength;            // m, at that place
-    double foundation_a, foundation_b;  // N/m^3 and N/m, at the mean wavelength; 0 without a foundation
+    double edges;                      // per wavelength, at the worst place; 0 without an interior
+    double edges_wavelength;           // m, at that place
+    double foundation_a, foundation_b; // N/m^3 and N/m, at the mean wavelength; 0 without a foundation
 
     ruga_lattice lattice;
     ruga_rows rows;             // exact holds of the interior
@@ -63,8 +64,9 @@ struct ruga_model {
     bool solves_skin; // false: x = B q
 };
 
-// Checks and copies the arrays of a skin that varies, and puts means in the place of the skin's single values. An
-// array of equal values is a single value. Then wavelengths, critical strains and edges per wavelength, local and all.
+// Checks and copies the arrays of a skin that varies, and puts means in the place of the skin's single
+// values. An array of equal values is a single value. Then wavelengths, critical strains and edges per
+// wavelength, local and all.
 ruga_status ruga_variation_create(const ruga_skin_def* skin, ruga_model* model);
 ruga_status ruga_variation_wavelengths(ruga_model* model);
 void ruga_variation_clear(ruga_variation* variation);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// Skins that vary in space. At a vertex with thickness h and Young's modulus E_x, eq. 3 gives the local wavelength
-// lambda = 2 pi h (E*_x / (3 E*_q))^(1/3) and Allen's formula the local critical strain, as if the skin were the same
-// all around. What needs one number for all of the skin takes the mean over its area: steps of solvers, the floor
-// of f_ref, the unit of shifts. What must not miss a place takes the worst: edges per wavelength, substeps.
+// Skins that vary in space. At a vertex with thickness h and Young's modulus E_x, eq. 3 gives the local
+// wavelength lambda = 2 pi h (E*_x / (3 E*_q))^(1/3) and Allen's formula the local critical strain, as if the
+// skin were the same all around. What needs one number for all of the skin takes the mean over its area:
+// steps of solvers, the floor of f_ref, the unit of shifts. What must not miss a place takes the worst: edges
+// per wavelength, substeps.
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "shell/shell.h"
@@ -14,21 +15,24 @@
 #include <string.h>
 
 void ruga_variation_clear(ruga_variation* variation) {
-    double* const owned[] = {variation->thickness,          variation->young,          variation->growth,
-                             variation->triangle_thickness, variation->triangle_young, variation->triangle_growth,
-                             variation->wavelength,         variation->scale,          variation->triangle_critical};
+    double* const owned[] = {
+        variation->thickness,          variation->young,          variation->growth,
+        variation->triangle_thickness, variation->triangle_young, variation->triangle_growth,
+        variation->wavelength,         variation->scale,          variation->triangle_critical};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
         ruga_release(owned[i]);
     }
     *variation = (ruga_variation){0};
 }
 
-static ruga_status check_values(const double* values, const char* name, int components, const ruga_mesh* mesh) {
+static ruga_status check_values(const double* values, const char* name, int components,
+                                const ruga_mesh* mesh) {
     for (int i = 0; i < components * mesh->vertex_count; i++) {
         if (!(values[i] > 0) || !isfinite(values[i])) {
             const double* x = mesh->position + 3 * (size_t)(i / components);
-            return ruga_fail(RUGA_BAD_INPUT, "skin.%s is %g at vertex %d (%.6g, %.6g, %.6g) m; it must be above 0",
-                             name, values[i], i / components, x[0], x[1], x[2]);
+            return ruga_fail(RUGA_BAD_INPUT,
+                             "skin.%s is %g at vertex %d (%.6g, %.6g, %.6g) m; it must be above 0", name,
+                             values[i], i / components, x[0], x[1], x[2]);
         }
     }
     return RUGA_OK;
@@ -57,7 +61,8 @@ static void mean_over_area(const ruga_model* model, const double* values, int co
     }
 }
 
-// One of the three: *vertex and *triangle stay NULL where it is the same everywhere; single [components] is set.
+// One of the three: *vertex and *triangle stay NULL where it is the same everywhere; single [components] is
+// set.
 static ruga_status take(const ruga_model* model, const double* values, const char* name, int components,
                         double* single, double** vertex, double** triangle) {
     const ruga_mesh* mesh = &model->mesh;
@@ -82,14 +87,17 @@ ruga_status ruga_variation_create(const ruga_skin_def* skin, ruga_model* model) 
     ruga_skin_def* single = &model->skin;
     bool any = skin->vertex_thickness || skin->vertex_young || skin->vertex_growth;
     if (any && skin->vertex_count != model->mesh.vertex_count) {
-        return ruga_fail(RUGA_BAD_INPUT,
-                         "skin.vertex_count is %d, but the mesh has %d vertices: give one value for each of them",
-                         skin->vertex_count, model->mesh.vertex_count);
+        return ruga_fail(
+            RUGA_BAD_INPUT,
+            "skin.vertex_count is %d, but the mesh has %d vertices: give one value for each of them",
+            skin->vertex_count, model->mesh.vertex_count);
     }
     RUGA_TRY(take(model, skin->vertex_thickness, "vertex_thickness", 1, &single->thickness, &v->thickness,
                   &v->triangle_thickness));
-    RUGA_TRY(take(model, skin->vertex_young, "vertex_young", 1, &single->young, &v->young, &v->triangle_young));
-    RUGA_TRY(take(model, skin->vertex_growth, "vertex_growth", 2, single->growth, &v->growth, &v->triangle_growth));
+    RUGA_TRY(
+        take(model, skin->vertex_young, "vertex_young", 1, &single->young, &v->young, &v->triangle_young));
+    RUGA_TRY(take(model, skin->vertex_growth, "vertex_growth", 2, single->growth, &v->growth,
+                  &v->triangle_growth));
     single->vertex_thickness = single->vertex_young = single->vertex_growth = NULL;
     single->vertex_count = 0;
     return RUGA_OK;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// skin.vary: from regions, gradients, attributes and textures to values at the vertices. tests/scenes/vary.ply is a
-// sheet of 4 x 2 quads, x in [0, 0.4], y in [0, 0.2], with thickness_mm = 1 + 5 x, weight = 1000 y and uv = x / 0.4,
-// y / 0.2; ramp.png has the greys 0, 0.2, .., 0.8 in its lower row and white above. Refusals: tests/scenes/bad/vary_*.
+// skin.vary: from regions, gradients, attributes and textures to values at the vertices.
+// tests/scenes/vary.ply is a sheet of 4 x 2 quads, x in [0, 0.4], y in [0, 0.2], with thickness_mm = 1 + 5 x,
+// weight = 1000 y and uv = x / 0.4, y / 0.2; ramp.png has the greys 0, 0.2, .., 0.8 in its lower row and
+// white above. Refusals: tests/scenes/bad/vary_*.
 #include "tests/check.h"
 
 #include "io/mesh_file.h"
@@ -14,7 +15,7 @@
 #include <string.h>
 
 #define SCENES RUGA_SOURCE_DIR "/tests/scenes"
-#define SHEET "mesh: {file: vary.ply, unit: m}\ninterior: none\n"
+#define SHEET  "mesh: {file: vary.ply, unit: m}\ninterior: none\n"
 
 static ruga_scene read_scene(const char* text) {
     ruga_scene scene;
@@ -37,10 +38,11 @@ static void without_entries_there_are_no_arrays(void** state) {
 
 static void later_entries_override_earlier_ones(void** state) {
     (void)state;
-    ruga_scene scene = read_scene(SHEET "skin: {thickness: 3 mm, young: 7 MPa, growth: [1.2, 1], vary: [\n"
-                                        "  {region: {plane: {center: [0.2, 0, 0], normal: [1, 0, 0]}}, thickness: 1 mm,"
-                                        " growth_v: 1.1},\n"
-                                        "  {region: {vertices: [4, 0]}, thickness: 2 mm}]}\n");
+    ruga_scene scene =
+        read_scene(SHEET "skin: {thickness: 3 mm, young: 7 MPa, growth: [1.2, 1], vary: [\n"
+                         "  {region: {plane: {center: [0.2, 0, 0], normal: [1, 0, 0]}}, thickness: 1 mm,"
+                         " growth_v: 1.1},\n"
+                         "  {region: {vertices: [4, 0]}, thickness: 2 mm}]}\n");
     const ruga_skin_def* skin = &scene.def.skin;
     assert_int_equal(skin->vertex_count, scene.mesh.vertex_count);
     assert_null(skin->vertex_young);
@@ -66,9 +68,10 @@ static void a_gradient_is_linear_and_held_outside(void** state) {
 
 static void an_attribute_goes_on_beyond_its_two_values(void** state) {
     (void)state;
-    ruga_scene scene = read_scene(SHEET "skin: {vary: [{attribute: thickness_mm, thickness: [0, 1 mm]}, "
-                                        "{attribute: weight, young: [1 MPa, 2 MPa], region: {box: [[0, 0.05, 0], "
-                                        "[1, 1, 0]]}}]}\n");
+    ruga_scene scene =
+        read_scene(SHEET "skin: {vary: [{attribute: thickness_mm, thickness: [0, 1 mm]}, "
+                         "{attribute: weight, young: [1 MPa, 2 MPa], region: {box: [[0, 0.05, 0], "
+                         "[1, 1, 0]]}}]}\n");
     for (int v = 0; v < scene.mesh.vertex_count; v++) {
         double weight = 1000 * at(&scene, v)[1];
         assert_near(scene.def.skin.vertex_thickness[v], 1e-3 * (1 + 5 * at(&scene, v)[0]), 1e-9);

@@ -124,7 +124,8 @@ static void a_shell_of_equal_values_has_the_bits_of_a_uniform_one(void** state) 
 // Error of the centred difference along d, of the gradient and (as the largest entry) of the Hessian.
 static void difference_errors(const fixture* f, const double* x, const double* d, double s, const double* g,
                               const double* hd, double* slope_error, double* change_error) {
-    double *a = scene_copy(f->n, x), *b = scene_copy(f->n, x), *ga = scene_array(f->n), *gb = scene_array(f->n);
+    double *a = scene_copy(f->n, x), *b = scene_copy(f->n, x), *ga = scene_array(f->n),
+           *gb = scene_array(f->n);
     for (int i = 0; i < f->n; i++) {
         a[i] -= s * d[i];
         b[i] += s * d[i];
@@ -145,7 +146,8 @@ static void derivatives_of_a_varying_shell_agree_to_second_order(void** state) {
     fixture f;
     set_up(&f, 0.4);
     make_shell(&f, true, true, true);
-    double *x = scene_copy(f.n, f.mesh.position), *d = scene_array(f.n), *g = scene_array(f.n), *hd = scene_array(f.n);
+    double *x = scene_copy(f.n, f.mesh.position), *d = scene_array(f.n), *g = scene_array(f.n),
+           *hd = scene_array(f.n);
     double* h = scene_array(ruga_shell_pattern(f.shell)->start[f.n]);
     scene_disturb(f.n, 0.08, 7, x);
     scene_disturb(f.n, 1, 8, d);
@@ -265,7 +267,8 @@ static void a_varying_foundation_is_a_symmetric_quadratic_form(void** state) {
     tear_down(&f);
 }
 
-// b linear along x and d = (0, 0, x): 1/2 int b = 1/2 b(mean) area, exactly; with equal values that of one value.
+// b linear along x and d = (0, 0, x): 1/2 int b = 1/2 b(mean) area, exactly; with equal values that of one
+// value.
 static void a_varying_foundation_has_the_energy_of_its_integral(void** state) {
     (void)state;
     fixture f;
@@ -298,7 +301,8 @@ static void obtuse_triangles_leave_a_varying_foundation_positive(void** state) {
     const double position[] = {-1, 0, 0, 1, 0, 0, 0, 0.2, 0, 0, -0.2, 0};
     const int triangle[] = {0, 1, 2, 1, 0, 3};
     const double zero[4] = {0}, b[4] = {1, 1, 0.01, 20};
-    ruga_mesh_def def = {.vertex_count = 4, .positions = position, .triangle_count = 2, .triangles = triangle};
+    ruga_mesh_def def = {
+        .vertex_count = 4, .positions = position, .triangle_count = 2, .triangles = triangle};
     ruga_mesh mesh;
     ruga_connectivity c;
     ruga_foundation w;
