@@ -371,10 +371,12 @@ static ruga_status run(ruga_validation* v) {
     RUGA_TRY(run_sheet(v, MODULUS_STEP, "modulus", NULL));
     RUGA_TRY(run_sheet(v, FOUNDATION_GRADIENT, "no-clusters", NULL));
     ruga_validation_note(
-        v, "Clusters alone would set the wavelength by their spacing. Without them the foundation must do "
-           "it, and at 2 eps_c it does. Its tangential springs are soft, so that the skin slides and "
-           "the thicker part, which pushes harder, is strained less: it wrinkles late. With a step and "
-           "no clusters the thick half hardly wrinkles at 2 eps_c at all.");
+        v,
+        "Clusters alone would set the wavelength by their spacing. Without them the foundation must do it, "
+        "and at 2 eps_c it does. Its tangential springs are soft, so that the skin slides at both ends, more "
+        "at "
+        "the thick one, which pushes harder: wrinkles come late, and the ends stay flat. With a step and no "
+        "clusters the thick half hardly wrinkles at 2 eps_c at all.");
     return RUGA_OK;
 }
 
