@@ -49,10 +49,10 @@ static ruga_status derive(const ruga_arguments* arguments, facts* f) {
                          f->strain);
     }
     if (isfinite(f->strain)) {
-        f->amplitude = ruga_wrinkle_amplitude(&def->skin, &def->interior, f->strain);
+        f->amplitude = ruga_wrinkle_amplitude(&f->model->skin, &def->interior, f->strain);
     }
     if (f->model->solves_skin) {
-        f->edges = f->model->wavelength / f->model->mean_edge;
+        f->edges = f->model->edges;
         f->refused = f->edges < edges_least && !def->solver.allow_coarse;
     }
     return RUGA_OK;
@@ -67,6 +67,13 @@ static void say_key(const char* key, const char* value, const char* unit, bool g
     ruga_say(context, "    %-28s %s%s\n", key, text, given ? "" : "  (default)");
 }
 
+static void say_variation(const ruga_arguments* arguments, const ruga_model* m) {
+    ruga_say(arguments, "    %-28s %.4g to %.4g mm, the value above is the mean over the area\n",
+             "local wavelength", 1e3 * m->wavelength_min, 1e3 * m->wavelength_max);
+    ruga_say(arguments, "    %-28s %.3g to %.3g %%\n", "local critical strain", 1e2 * m->critical_strain,
+             1e2 * m->critical_strain_max);
+}
+
 static void say_wrinkles(const ruga_arguments* arguments, const facts* f) {
     if (!f->scene->def.has_interior) {
         ruga_say(arguments, "wrinkles\n    no interior: nothing sets a wavelength\n");
@@ -74,16 +81,20 @@ static void say_wrinkles(const ruga_arguments* arguments, const facts* f) {
     }
     ruga_say(arguments, "wrinkles\n    %-28s %.4g mm\n    %-28s %.3g %%\n", "wavelength",
              1e3 * f->model->wavelength, "critical strain", 1e2 * f->model->critical_strain);
+    if (f->model->variation.wavelength) {
+        say_variation(arguments, f->model);
+    }
     if (isfinite(f->amplitude)) {
         char name[48];
         (void)snprintf(name, sizeof name, "amplitude at %.3g %% strain", 1e2 * f->strain);
-        ruga_say(arguments, "    %-28s %.4g mm\n", name, 1e3 * f->amplitude);
+        ruga_say(arguments, "    %-28s %.4g mm%s\n", name, 1e3 * f->amplitude,
+                 f->model->variation.wavelength ? ", of a skin of mean thickness and modulus" : "");
     } else {
         ruga_say(arguments, "    %-28s give --strain to know it\n", "amplitude");
     }
     if (isfinite(f->edges)) {
-        ruga_say(arguments, "    %-28s %.3g (mean edge %.4g mm)\n", "edges per wavelength", f->edges,
-                 1e3 * f->model->mean_edge);
+        ruga_say(arguments, "    %-28s %.3g (%smean edge %.4g mm)\n", "edges per wavelength", f->edges,
+                 f->model->variation.wavelength ? "at the worst place; " : "", 1e3 * f->model->mean_edge);
     }
 }
 
@@ -131,23 +142,30 @@ static json_t* facts_json(const facts* f) {
     json_t* warnings = ruga_json_texts(f->scene->warning_count, (const char* const*)f->scene->warning);
     json_t* wavelength = m->has_interior ? ruga_json_number(m->wavelength) : json_null();
     json_t* critical = m->has_interior ? ruga_json_number(m->critical_strain) : json_null();
+    json_t* range =
+        m->variation.wavelength ? json_pack("[f, f]", m->wavelength_min, m->wavelength_max) : json_null();
+    json_t* strains = m->variation.wavelength
+                          ? json_pack("[f, f]", m->critical_strain, m->critical_strain_max)
+                          : json_null();
     return json_pack(
-        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:i, s:o, s:o, "
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:i, s:o, "
+        "s:o, "
         "s:o, s:b}",
-        "keys", keys, "wavelength", wavelength, "critical_strain", critical, "strain",
-        ruga_json_number(f->strain), "amplitude", ruga_json_number(f->amplitude), "edges_per_wavelength",
-        ruga_json_number(f->edges), "mean_edge", ruga_json_number(m->mean_edge), "vertices",
-        m->mesh.vertex_count, "triangles", m->mesh.triangle_count, "clusters", m->clusters.count, "elements",
-        m->lattice.element_count, "superimposed", m->lattice.superimposed, "lattice_nodes",
-        m->lattice.node_count, "degrees_of_freedom", unknowns, "memory_bytes", ruga_json_number(e->bytes),
-        "frames", m->frames, "seconds_per_frame", ruga_json_number(e->seconds_per_frame), "seconds",
-        ruga_json_number(e->seconds_per_frame * m->frames), "warnings", warnings, "ok", !f->refused);
+        "keys", keys, "wavelength_range", range, "critical_strain_range", strains, "wavelength", wavelength,
+        "critical_strain", critical, "strain", ruga_json_number(f->strain), "amplitude",
+        ruga_json_number(f->amplitude), "edges_per_wavelength", ruga_json_number(f->edges), "mean_edge",
+        ruga_json_number(m->mean_edge), "vertices", m->mesh.vertex_count, "triangles", m->mesh.triangle_count,
+        "clusters", m->clusters.count, "elements", m->lattice.element_count, "superimposed",
+        m->lattice.superimposed, "lattice_nodes", m->lattice.node_count, "degrees_of_freedom", unknowns,
+        "memory_bytes", ruga_json_number(e->bytes), "frames", m->frames, "seconds_per_frame",
+        ruga_json_number(e->seconds_per_frame), "seconds", ruga_json_number(e->seconds_per_frame * m->frames),
+        "warnings", warnings, "ok", !f->refused);
 }
 
 // ---- the command ---------------------------------------------------------------------------------------
 
 static ruga_status judge_edges(const ruga_arguments* arguments, const facts* f) {
-    double good = 1e3 * f->model->wavelength / edges_good;
+    double good = 1e3 * f->model->edges_wavelength / edges_good;
     if (f->refused) {
         return ruga_fail(
             RUGA_BAD_INPUT,

@@ -154,10 +154,19 @@ static ruga_status strip_wavelength(const ruga_measure* m, double* wavelength) {
 
 // ---- life ----------------------------------------------------------------------------------------------
 
-static ruga_status create_clusters(ruga_measure* m, double wavelength, int64_t seed) {
-    double radius, sigma;
+static ruga_status create_clusters(ruga_measure* m, double wavelength, const double* local, int64_t seed) {
+    double radius, sigma, *scale = NULL;
     ruga_clusters_rule(RUGA_RULE_CALIBRATED, wavelength, &radius, &sigma);
-    RUGA_TRY(ruga_clusters_create(m->mesh, &m->connectivity, radius, sigma, 0, seed, &m->clusters));
+    if (local) {
+        RUGA_TRY(RUGA_NEW(scale, m->mesh->vertex_count));
+        for (int v = 0; v < m->mesh->vertex_count; v++) {
+            scale[v] = local[v] / wavelength;
+        }
+    }
+    ruga_status status =
+        ruga_clusters_create_local(m->mesh, &m->connectivity, radius, sigma, scale, 0, seed, &m->clusters);
+    ruga_release(scale);
+    RUGA_TRY(status);
     for (int k = 0; k < m->clusters.start[m->clusters.count]; k++) {
         m->blend[m->clusters.vertex[k]] += m->clusters.weight[k];
     }
@@ -165,6 +174,11 @@ static ruga_status create_clusters(ruga_measure* m, double wavelength, int64_t s
 }
 
 ruga_status ruga_measure_create(const ruga_mesh* mesh, double wavelength, int64_t seed, ruga_measure** out) {
+    return ruga_measure_create_local(mesh, wavelength, NULL, seed, out);
+}
+
+ruga_status ruga_measure_create_local(const ruga_mesh* mesh, double wavelength, const double* local,
+                                      int64_t seed, ruga_measure** out) {
     ruga_status status = RUGA_OK;
     ruga_measure* m = NULL;
     *out = NULL;
@@ -178,7 +192,7 @@ ruga_status ruga_measure_create(const ruga_mesh* mesh, double wavelength, int64_
     RUGA_TRY_DONE(RUGA_NEW_ZERO(m->low, mesh->vertex_count));
     ruga_mesh_vertex_areas(mesh, m->area);
     if (wavelength > 0) {
-        RUGA_TRY_DONE(create_clusters(m, wavelength, seed));
+        RUGA_TRY_DONE(create_clusters(m, wavelength, local, seed));
     }
     RUGA_TRY_DONE(create_strips(m));
 done:

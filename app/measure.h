@@ -14,6 +14,9 @@ typedef struct ruga_measure ruga_measure;
 // `wavelength`: eq. 3, m; it sizes the clusters whose averages are the low-pass part. 0: none is taken out.
 ruga_status ruga_measure_create(const ruga_mesh* mesh, double wavelength, int64_t seed,
                                 ruga_measure** measure);
+// The same with clusters of the local wavelengths [V], whose mean is `wavelength`; local NULL: as above.
+ruga_status ruga_measure_create_local(const ruga_mesh* mesh, double wavelength, const double* local,
+                                      int64_t seed, ruga_measure** measure);
 void ruga_measure_destroy(ruga_measure** measure);
 
 typedef struct ruga_measured {

@@ -20,7 +20,8 @@ ruga_status ruga_measurement_take(ruga_result_reader* reader, int frame, ruga_me
     RUGA_TRY_DONE(
         ruga_result_read_frame(reader, m->frame, &m->time, position, m->tied ? embedded : NULL, &m->report));
     if (m->tied) {
-        RUGA_TRY_DONE(ruga_measure_create(mesh, header->wavelength, header->seed, &measure));
+        RUGA_TRY_DONE(ruga_measure_create_local(mesh, header->wavelength, header->vertex_wavelength, header->seed,
+                                                &measure));
         RUGA_TRY_DONE(ruga_measure_frame(measure, position, embedded, &m->values));
     } else {
         ruga_mesh deformed = *mesh;

@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-enum { PIXELS_MAX = 16384, COLOR_CLAY = 0, COLOR_DISPLACEMENT = 1 };
+enum { PIXELS_MAX = 16384, COLOR_CLAY = 0, COLOR_DISPLACEMENT = 1 }; // further ones: what a varying skin has
 static const double DEGREE = 0.017453292519943295;
 static const double ELEVATION_MAX = 1.5533; // 89 deg: straight from above, no side of the picture is up
 
@@ -20,7 +20,9 @@ static const ruga_option options[] = {
     {"--frames", NULL, "A:B", "frames, both ends included", false},
     {"--width", NULL, "PIXELS", "width of the picture [1280]", false},
     {"--height", NULL, "PIXELS", "height of the picture [960]", false},
-    {"--color", NULL, "NAME", "clay, or displacement: how far the skin stands off the interior [clay]",
+    {"--color", NULL, "NAME",
+     "clay; displacement: how far the skin stands off the interior; thickness, young or\n"
+     "wavelength of a skin that varies [clay]",
      false},
     {"--up", NULL, "AXIS", "the axis that points up: x, y or z [z]", false},
     {"--azimuth", NULL, "ANGLE", "where the camera stands, turned about the up axis [-63 deg]", false},
@@ -63,6 +65,30 @@ static ruga_status choose_scale(job* j, const ruga_frame_range* range) {
     return RUGA_OK;
 }
 
+// Colours by a value of the skin at the vertices; `color` is its place among the choices.
+static ruga_status choose_value(job* j, int color) {
+    static const char* const names[] = {"thickness", "Young's modulus", "wavelength"};
+    static const char* const units[] = {"m", "Pa", "m"};
+    const ruga_result_header* header = ruga_result_reader_header(j->reader);
+    const double* const values[] = {header->vertex_thickness, header->vertex_young,
+                                    header->vertex_wavelength};
+    int which = color - COLOR_DISPLACEMENT - 1;
+    if (!values[which]) {
+        return ruga_fail(RUGA_BAD_INPUT, "--color: the %s of the skin in %s does not vary", names[which],
+                         ruga_operand(j->arguments));
+    }
+    j->def.scalar = values[which];
+    j->def.scalar_min = INFINITY;
+    j->def.scalar_max = -INFINITY;
+    for (int v = 0; v < ruga_result_mesh(j->reader)->vertex_count; v++) {
+        j->def.scalar_min = fmin(j->def.scalar_min, values[which][v]);
+        j->def.scalar_max = fmax(j->def.scalar_max, values[which][v]);
+    }
+    ruga_say(j->arguments, "colours from %.4g %s to %.4g %s\n", j->def.scalar_min, units[which],
+             j->def.scalar_max, units[which]);
+    return RUGA_OK;
+}
+
 static ruga_status choose_camera(job* j) {
     int up = 2;
     RUGA_TRY(ruga_option_choice(j->arguments, "--up", "x|y|z", &up));
@@ -83,7 +109,8 @@ static ruga_status prepare(job* j, const ruga_frame_range* range) {
     RUGA_TRY(choose_camera(j));
     RUGA_TRY(ruga_integer(j->arguments, "--width", 16, PIXELS_MAX, &j->def.width));
     RUGA_TRY(ruga_integer(j->arguments, "--height", 16, PIXELS_MAX, &j->def.height));
-    RUGA_TRY(ruga_option_choice(j->arguments, "--color", "clay|displacement", &color));
+    RUGA_TRY(
+        ruga_option_choice(j->arguments, "--color", "clay|displacement|thickness|young|wavelength", &color));
     const ruga_mesh* mesh = ruga_result_mesh(j->reader);
     const ruga_result_header* header = ruga_result_reader_header(j->reader);
     RUGA_TRY(RUGA_NEW(j->position, 3 * (size_t)mesh->vertex_count));
@@ -91,11 +118,15 @@ static ruga_status prepare(job* j, const ruga_frame_range* range) {
     if (color == COLOR_CLAY) {
         return RUGA_OK;
     }
+    if (color > COLOR_DISPLACEMENT) {
+        return choose_value(j, color);
+    }
     if (!ruga_result_has_interior(j->reader)) {
         return ruga_fail(RUGA_BAD_INPUT, "--color displacement: %s has no interior to measure from",
                          ruga_operand(j->arguments));
     }
-    RUGA_TRY(ruga_measure_create(mesh, header->wavelength, header->seed, &j->measure));
+    RUGA_TRY(ruga_measure_create_local(mesh, header->wavelength, header->vertex_wavelength, header->seed,
+                                       &j->measure));
     return choose_scale(j, range);
 }
 

@@ -130,13 +130,13 @@ static bool on_progress(const char* stage, double done, void* context) {
 }
 
 static void warn_of_coarse_mesh(const job* j) {
-    double edges = j->model->wavelength / j->model->mean_edge;
+    double edges = j->model->edges, wavelength = j->model->edges_wavelength;
     if (j->model->has_interior && j->model->solves_skin && edges < 8) {
         ruga_warn(
             j->arguments,
             "the mesh has %.2g edges per wrinkle wavelength (%.3g mm); below 8 wrinkles come out too long or "
             "not at all: remesh with edge %.3g mm",
-            edges, 1e3 * j->model->wavelength, 1e3 * j->model->wavelength / 8);
+            edges, 1e3 * wavelength, 1e3 * wavelength / 8);
     }
 }
 
@@ -155,6 +155,10 @@ static ruga_status open_result(job* j) {
         .cluster_sigma = model->coupling.sigma,
         .cluster_radius = model->coupling.radius,
         .restart_doubles = ruga_state_restart_size(model),
+        .vertex_thickness = model->variation.thickness,
+        .vertex_young = model->variation.young,
+        .vertex_growth = model->variation.growth,
+        .vertex_wavelength = model->variation.wavelength,
     };
     RUGA_TRY(RUGA_NEW_ZERO(j->restart, header.restart_doubles));
     if (!j->continues) {

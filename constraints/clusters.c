@@ -6,7 +6,8 @@
 //     alpha_i = w exp(-d_i^2 / (2 sigma^2)) where d_i < 2 sigma, 0 elsewhere, w such that sum_i alpha_i = 1.
 // Centres are chosen greedily, always the vertex that is farthest from those chosen. An update walks only
 // over vertices that come closer to a centre by it: a shortest path to such a vertex runs over such vertices
-// alone.
+// alone. Where the wavelength varies, the path that chooses centres is measured in local wavelengths: an edge
+// counts as |e| over the mean scale of its ends.
 #include "constraints/clusters.h"
 
 #include "core/memory.h"
@@ -181,11 +182,13 @@ static int compare_ints(const void* a, const void* b) {
 }
 
 // Entries of all rows; `distance` is all INFINITY before and after.
-static ruga_status fill_rows(builder* b, double sigma, double* distance, ruga_clusters* clusters) {
+static ruga_status fill_rows(builder* b, double sigma_mean, const double* scale, double* distance,
+                             ruga_clusters* clusters) {
     int vertex_capacity = 0, weight_capacity = 0;
     RUGA_TRY(RUGA_NEW(clusters->start, clusters->count + 1));
     clusters->start[0] = 0;
     for (int i = 0; i < clusters->count; i++) {
+        double sigma = scale ? sigma_mean * scale[clusters->center[i]] : sigma_mean;
         RUGA_TRY(walk(b, clusters->center[i], 2 * sigma, distance));
         int begin = clusters->start[i];
         if (b->reached_count > INT_MAX - begin) {
@@ -233,8 +236,24 @@ static ruga_status check_input(const ruga_connectivity* c, double radius, double
     return c->component_count > 0 ? RUGA_OK : ruga_fail(RUGA_BAD_INPUT, "the mesh has no faces");
 }
 
+// Rest lengths of the edges, in local units where scale is given.
+static void measure_edges(const ruga_mesh* mesh, const ruga_connectivity* connectivity, const double* scale,
+                          double* length) {
+    for (int e = 0; e < connectivity->edge_count; e++) {
+        const int* edge = connectivity->edge[e];
+        length[e] = ruga_distance(mesh->position + 3 * (size_t)edge[0], mesh->position + 3 * (size_t)edge[1]);
+        length[e] /= scale ? 0.5 * (scale[edge[0]] + scale[edge[1]]) : 1;
+    }
+}
+
 ruga_status ruga_clusters_create(const ruga_mesh* mesh, const ruga_connectivity* connectivity, double radius,
                                  double sigma, int count, int64_t seed, ruga_clusters* clusters) {
+    return ruga_clusters_create_local(mesh, connectivity, radius, sigma, NULL, count, seed, clusters);
+}
+
+ruga_status ruga_clusters_create_local(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                       double radius, double sigma, const double* scale, int count,
+                                       int64_t seed, ruga_clusters* clusters) {
     ruga_status status = RUGA_OK;
     builder b = {.connectivity = connectivity};
     double* row_distance = NULL;
@@ -243,15 +262,13 @@ ruga_status ruga_clusters_create(const ruga_mesh* mesh, const ruga_connectivity*
     RUGA_TRY_DONE(RUGA_NEW(b.edge_length, connectivity->edge_count));
     RUGA_TRY_DONE(RUGA_NEW(b.distance, mesh->vertex_count));
     RUGA_TRY_DONE(RUGA_NEW(row_distance, mesh->vertex_count));
-    for (int e = 0; e < connectivity->edge_count; e++) {
-        const int* edge = connectivity->edge[e];
-        b.edge_length[e] = ruga_distance(mesh->position + 3 * edge[0], mesh->position + 3 * edge[1]);
-    }
+    measure_edges(mesh, connectivity, scale, b.edge_length);
     for (int v = 0; v < mesh->vertex_count; v++) {
         b.distance[v] = row_distance[v] = INFINITY;
     }
     RUGA_TRY_DONE(choose_centers(&b, radius, count, seed, clusters));
-    RUGA_TRY_DONE(fill_rows(&b, sigma, row_distance, clusters));
+    measure_edges(mesh, connectivity, NULL, b.edge_length);
+    RUGA_TRY_DONE(fill_rows(&b, sigma, scale, row_distance, clusters));
     RUGA_TRY_DONE(ruga_clusters_transpose(clusters));
 done:
     ruga_release(b.edge_length);

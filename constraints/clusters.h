@@ -30,6 +30,14 @@ typedef struct ruga_clusters {
 ruga_status ruga_clusters_create(const ruga_mesh* mesh, const ruga_connectivity* connectivity, double radius,
                                  double sigma, int count, int64_t seed, ruga_clusters* clusters);
 
+// The same where the wavelength varies: lengths are measured in local ones, `scale` [V] (> 0) being the local
+// wavelength over the one that radius and sigma are for. Centres are farthest points in the metric |dx| /
+// scale, to within radius; a centre's Gaussian has the width sigma * scale at the centre, in metres. scale
+// NULL: 1 everywhere.
+ruga_status ruga_clusters_create_local(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                       double radius, double sigma, const double* scale, int count,
+                                       int64_t seed, ruga_clusters* clusters);
+
 // Rows = the `count` eigenvectors L phi = lambda M phi of the mesh Laplacian (cotangent L, lumped mass M)
 // with smallest eigenvalues, as phi^T M scaled to unit 2-norm: H x is the spectral coefficient. One constant
 // vector for each component comes first, then ascending eigenvalues. RUGA_BAD_INPUT where count is below the

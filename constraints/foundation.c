@@ -4,7 +4,9 @@
 // Pasternak foundation. With A_i the lumped area of vertex i and w_e the cotangent weight of edge e = (i, j):
 //     E = 1/2 sum_i a A_i |d_i|^2 + 1/2 sum_e b w_e |d_i - d_j|^2,
 //     gradient_i = a A_i d_i + sum_j b w_ij (d_i - d_j).
-// A displacement A sin(k x) of a flat sheet along its normal has the energy (a + b k^2) A^2 / 4 per area.
+// Where b varies, b w_e is the sum over the two triangles beside e of b (mean of the corners) times its
+// cotangent / 2. A displacement A sin(k x) of a flat sheet along its normal has the energy (a + b k^2) A^2 /
+// 4 per area.
 #include "constraints/foundation.h"
 
 #include "constraints/laplacian.h"
@@ -27,19 +29,41 @@ static ruga_status copy_topology(const ruga_connectivity* c, ruga_foundation* f)
     return RUGA_OK;
 }
 
+static double spring_of(const ruga_foundation* f, int v) {
+    return f->local_spring ? f->local_spring[v] : f->spring;
+}
+
+// edge_value = b w_e.
+static ruga_status set_stiffness(const ruga_mesh* mesh, const ruga_connectivity* connectivity, double b,
+                                 const double* local_b, ruga_foundation* f) {
+    if (!local_b) {
+        RUGA_TRY(ruga_laplacian_weights(mesh, connectivity, f->edge_value));
+        for (int e = 0; e < f->edge_count; e++) {
+            f->edge_value[e] = b * f->edge_value[e];
+        }
+        return RUGA_OK;
+    }
+    double* triangle_b = NULL;
+    RUGA_TRY(RUGA_NEW(triangle_b, mesh->triangle_count));
+    ruga_mesh_triangle_averages(mesh, 1, local_b, triangle_b);
+    ruga_status status = ruga_laplacian_weights_scaled(mesh, connectivity, triangle_b, f->edge_value);
+    ruga_release(triangle_b);
+    return status;
+}
+
 static ruga_status fill(const ruga_mesh* mesh, const ruga_connectivity* connectivity, double b,
-                        ruga_foundation* f) {
+                        const double* local_b, ruga_foundation* f) {
     RUGA_TRY(copy_topology(connectivity, f));
     RUGA_TRY(RUGA_NEW(f->diagonal, f->vertex_count));
     RUGA_TRY(RUGA_NEW(f->edge_value, f->edge_count));
     RUGA_TRY(RUGA_NEW(f->vertex_scale, f->vertex_count));
-    RUGA_TRY(ruga_laplacian_weights(mesh, connectivity, f->edge_value));
+    RUGA_TRY(set_stiffness(mesh, connectivity, b, local_b, f));
     ruga_mesh_vertex_areas(mesh, f->vertex_scale);
     for (int v = 0; v < f->vertex_count; v++) {
-        f->diagonal[v] = f->spring * f->vertex_scale[v];
+        f->diagonal[v] = spring_of(f, v) * f->vertex_scale[v];
     }
     for (int e = 0; e < f->edge_count; e++) {
-        double stiffness = b * f->edge_value[e];
+        double stiffness = f->edge_value[e];
         f->edge_value[e] = -stiffness;
         f->diagonal[f->edge[e][0]] += stiffness;
         f->diagonal[f->edge[e][1]] += stiffness;
@@ -52,7 +76,22 @@ ruga_status ruga_foundation_create(const ruga_mesh* mesh, const ruga_connectivit
     RUGA_ASSERT(a >= 0 && b >= 0);
     *foundation = (ruga_foundation){
         .vertex_count = mesh->vertex_count, .edge_count = connectivity->edge_count, .spring = a};
-    ruga_status status = fill(mesh, connectivity, b, foundation);
+    ruga_status status = fill(mesh, connectivity, b, NULL, foundation);
+    if (status != RUGA_OK) {
+        ruga_foundation_clear(foundation);
+    }
+    return status;
+}
+
+ruga_status ruga_foundation_create_local(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                         const double* a, const double* b, ruga_foundation* foundation) {
+    ruga_status status = RUGA_OK;
+    *foundation =
+        (ruga_foundation){.vertex_count = mesh->vertex_count, .edge_count = connectivity->edge_count};
+    RUGA_TRY_DONE(RUGA_NEW(foundation->local_spring, mesh->vertex_count));
+    memcpy(foundation->local_spring, a, (size_t)mesh->vertex_count * sizeof *a);
+    RUGA_TRY_DONE(fill(mesh, connectivity, 0, b, foundation));
+done:
     if (status != RUGA_OK) {
         ruga_foundation_clear(foundation);
     }
@@ -60,6 +99,7 @@ ruga_status ruga_foundation_create(const ruga_mesh* mesh, const ruga_connectivit
 }
 
 void ruga_foundation_clear(ruga_foundation* foundation) {
+    ruga_release(foundation->local_spring);
     ruga_release(foundation->diagonal);
     ruga_release(foundation->edge_value);
     ruga_release(foundation->edge);
@@ -86,7 +126,7 @@ static void evaluate(int begin, int end, int chunk, void* context) {
     double energy = 0, square = 0;
     for (int v = begin; v < end; v++) {
         const double* d = work->d + 3 * (size_t)v;
-        double a = f->spring * f->vertex_scale[v];
+        double a = spring_of(f, v) * f->vertex_scale[v];
         double sum[3] = {a * d[0], a * d[1], a * d[2]};
         energy += 0.5 * a * ruga_dot(d, d);
         square += ruga_dot(sum, sum);

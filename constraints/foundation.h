@@ -3,7 +3,8 @@
 //
 // The interior's response to what the lattice cannot represent: energy 1/2 d^T W d, W = a M + b L, of
 // d = x - Bq, M lumped areas, L cotangent Laplacian, of the rest shape; a = E*_q k/4, b = E*_q/(4k),
-// k = 2 pi/lambda: the half-space's E*_q k/2 and its slope at the critical wave number.
+// k = 2 pi/lambda: the half-space's E*_q k/2 and its slope at the critical wave number. Where lambda varies,
+// a is that of each vertex and b the mean of each triangle's corners: W stays symmetric and positive.
 #ifndef RUGA_CONSTRAINTS_FOUNDATION_H
 #define RUGA_CONSTRAINTS_FOUNDATION_H
 
@@ -19,7 +20,8 @@ typedef struct ruga_foundation {
     int (*edge)[2];       // [E]
     double* vertex_scale; // [V] lumped area, m^2
     // For the gradient, which each vertex gathers.
-    double spring;        // a, N/m^3
+    double spring;        // a, N/m^3, where it is the same everywhere
+    double* local_spring; // [V] a, or NULL
     int* neighbour_start; // [V + 1]
     int* neighbour;       // [2 E]
     int* neighbour_edge;  // [2 E]
@@ -28,6 +30,9 @@ typedef struct ruga_foundation {
 // a in N/m^3 and b in N/m, not negative. RUGA_BAD_MESH with the face where a triangle has no area.
 ruga_status ruga_foundation_create(const ruga_mesh* mesh, const ruga_connectivity* connectivity, double a,
                                    double b, ruga_foundation* foundation);
+// The same with a and b for each vertex, [V].
+ruga_status ruga_foundation_create_local(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                         const double* a, const double* b, ruga_foundation* foundation);
 void ruga_foundation_clear(ruga_foundation* foundation);
 
 // Energy in J at d [V][3]; ADDS W d to gradient [V][3] where not NULL. force_square (where not NULL) is SET

@@ -8,6 +8,11 @@
 
 ruga_status ruga_laplacian_weights(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
                                    double* weight) {
+    return ruga_laplacian_weights_scaled(mesh, connectivity, NULL, weight);
+}
+
+ruga_status ruga_laplacian_weights_scaled(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                          const double* triangle_b, double* weight) {
     memset(weight, 0, (size_t)connectivity->edge_count * sizeof *weight);
     for (int t = 0; t < mesh->triangle_count; t++) {
         const int* corner = mesh->triangle + 3 * (size_t)t;
@@ -23,7 +28,8 @@ ruga_status ruga_laplacian_weights(const ruga_mesh* mesh, const ruga_connectivit
                 return ruga_fail(RUGA_BAD_MESH,
                                  "face %d has no area: its corners lie on a line; remove it or remesh", t);
             }
-            weight[connectivity->triangle_edge[t][j]] += 0.5 * cosine / sine;
+            weight[connectivity->triangle_edge[t][j]] +=
+                (triangle_b ? triangle_b[t] : 1) * (0.5 * cosine / sine);
         }
     }
     return RUGA_OK;

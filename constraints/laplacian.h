@@ -12,5 +12,10 @@
 // weight [E] is SET. RUGA_BAD_MESH with the face where a triangle has no area.
 ruga_status ruga_laplacian_weights(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
                                    double* weight);
+// The same of int b |grad x|^2, b >= 0 constant on each triangle: each cotangent times its triangle's b.
+// Semi-definite like each triangle's own part, which a b for each edge would not be at obtuse angles.
+// triangle_b [F]; NULL = 1.
+ruga_status ruga_laplacian_weights_scaled(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                          const double* triangle_b, double* weight);
 
 #endif

@@ -2,9 +2,10 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // PLY, text and binary of both byte orders. Used are the elements vertex (x y z, and s t, u v or
-// texture_u texture_v) and face (vertex_indices or vertex_index, texcoord: u v of each corner, group); all
-// other elements and properties are read over. Corners at the same vertex with equal texcoords share one uv.
-// Groups, for which PLY has no word, are face property "group", a number into comments "ruga_group NAME".
+// texture_u texture_v) and face (vertex_indices or vertex_index, texcoord: u v of each corner, group). Any
+// other single number of a vertex but its normal is an attribute of the mesh by its name; all other elements
+// and properties are read over. Corners at the same vertex with equal texcoords share one uv. Groups, for
+// which PLY has no word, are face property "group", a number into comments "ruga_group NAME".
 #include "core/memory.h"
 #include "io/bytes.h"
 #include "io/mesh_file.h"
@@ -22,7 +23,7 @@ static const char* const scalar_name[SCALARS][2] = {
     {"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"},   {"ushort", "uint16"},
     {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}};
 
-typedef enum role { OTHER, X, Y, Z, S, T, CORNERS, TEXCOORD, GROUP } role;
+typedef enum role { OTHER, X, Y, Z, S, T, CORNERS, TEXCOORD, GROUP, ATTRIBUTE } role;
 typedef enum element_kind { SKIPPED, VERTEX, FACE } element_kind;
 enum { MAXIMUM_ELEMENTS = 64, MAXIMUM_PROPERTIES = 256 };
 
@@ -30,6 +31,7 @@ typedef struct property {
     role role;
     bool list;
     scalar count_type, type;
+    int attribute; // its number, where it is one
 } property;
 
 typedef struct element {
@@ -48,6 +50,10 @@ typedef struct reader {
     bool vertex_has_uv;
     int group_count, group_capacity;
     int* group; // number in polygons.names[0] of each group of the file
+    int attribute_count, name_capacity, attribute_capacity;
+    char** attribute_name;
+    double* attribute; // [rows][attribute_count]
+    int attribute_row; // vertices read
     // The row being read
     double value[GROUP + 1];
     int corner_count, corner_capacity, texcoord_count, texcoord_capacity;
@@ -148,6 +154,22 @@ static role find_role(element_kind kind, bool list, const char* name, size_t len
     return OTHER;
 }
 
+static bool is_normal(const char* name, size_t length) {
+    return length == 2 && name[0] == 'n' && name[1] >= 'x' && name[1] <= 'z';
+}
+
+static ruga_status name_attribute(reader* r, property* p, const char* name, size_t length) {
+    RUGA_TRY(RUGA_RESERVE(r->attribute_name, r->name_capacity, r->attribute_count + 1));
+    char* copy = NULL;
+    RUGA_TRY(RUGA_NEW(copy, length + 1));
+    memcpy(copy, name, length);
+    copy[length] = '\0';
+    p->role = ATTRIBUTE;
+    p->attribute = r->attribute_count;
+    r->attribute_name[r->attribute_count++] = copy;
+    return RUGA_OK;
+}
+
 static ruga_status read_property(reader* r) {
     if (r->element_count == 0 || r->property_count == MAXIMUM_PROPERTIES) {
         return ruga_text_fail(&r->text, "a property before any element, or more than %d properties",
@@ -166,6 +188,9 @@ static ruga_status read_property(reader* r) {
         return fail_word(&r->text, "a property's name");
     }
     p->role = find_role(e->kind, p->list, name, length);
+    if (e->kind == VERTEX && p->role == OTHER && !p->list && !is_normal(name, length)) {
+        RUGA_TRY(name_attribute(r, p, name, length));
+    }
     r->property_count++;
     e->property_count++;
     return RUGA_OK;
@@ -322,6 +347,7 @@ static ruga_status read_list(reader* r, const property* p) {
 static ruga_status store_vertex(reader* r) {
     const double position[3] = {r->value[X], r->value[Y], r->value[Z]}, uv[2] = {r->value[S], r->value[T]};
     RUGA_TRY(ruga_polygons_add_vertex(&r->polygons, position));
+    r->attribute_row += r->attribute_count > 0;
     return r->vertex_has_uv ? ruga_polygons_add_uv(&r->polygons, uv) : RUGA_OK;
 }
 
@@ -361,15 +387,24 @@ static ruga_status store_face(reader* r, long long vertex_count) {
     return RUGA_OK;
 }
 
+static double* attribute_value(const reader* r, const property* p) {
+    return r->attribute + (size_t)r->attribute_row * (size_t)r->attribute_count + (size_t)p->attribute;
+}
+
 static ruga_status read_row(reader* r, const element* e, long long vertex_count) {
     r->corner_count = r->texcoord_count = 0;
     r->value[GROUP] = -1;
     if (!r->binary && !ruga_text_skip_lines(&r->text)) {
         return ruga_text_fail(&r->text, "the file ends inside its data");
     }
+    if (e->kind == VERTEX) {
+        RUGA_TRY(RUGA_RESERVE(r->attribute, r->attribute_capacity,
+                              ((size_t)r->attribute_row + 1) * (size_t)r->attribute_count));
+    }
     for (int i = e->first; i < e->first + e->property_count; i++) {
         const property* p = &r->property[i];
-        RUGA_TRY(p->list ? read_list(r, p) : read_scalar(r, p->type, &r->value[p->role]));
+        double* value = p->role == ATTRIBUTE ? attribute_value(r, p) : &r->value[p->role];
+        RUGA_TRY(p->list ? read_list(r, p) : read_scalar(r, p->type, value));
     }
     if (e->kind == VERTEX) {
         RUGA_TRY(store_vertex(r));
@@ -409,6 +444,17 @@ static ruga_status read_content(reader* r) {
     return RUGA_OK;
 }
 
+// The mesh has the file's vertices in the file's order.
+static void give_attributes(reader* r, ruga_mesh* mesh) {
+    RUGA_ASSERT(r->attribute_row == mesh->vertex_count);
+    mesh->attribute_count = r->attribute_count;
+    mesh->attribute_name = r->attribute_name;
+    mesh->attribute = r->attribute;
+    r->attribute_count = 0;
+    r->attribute_name = NULL;
+    r->attribute = NULL;
+}
+
 ruga_status ruga_ply_read(const char* path, ruga_mesh* mesh) {
     *mesh = (ruga_mesh){0};
     reader* r = NULL;
@@ -420,9 +466,17 @@ ruga_status ruga_ply_read(const char* path, ruga_mesh* mesh) {
         if (status == RUGA_OK) {
             status = ruga_polygons_finish(&r->polygons, path, mesh);
         }
+        if (status == RUGA_OK && r->attribute_count > 0) {
+            give_attributes(r, mesh);
+        }
         ruga_text_close(&r->text);
     }
     ruga_polygons_clear(&r->polygons);
+    for (int a = 0; a < r->attribute_count; a++) {
+        ruga_release(r->attribute_name[a]);
+    }
+    ruga_release(r->attribute_name);
+    ruga_release(r->attribute);
     ruga_release(r->group);
     ruga_release(r->corner);
     ruga_release(r->texcoord);
@@ -489,6 +543,11 @@ static void write_header(ruga_writer* writer, const ruga_mesh* mesh, bool normal
                   mesh->vertex_count);
     (void)fputs(normals ? "property double nx\nproperty double ny\nproperty double nz\n" : "", file);
     (void)fputs(vertex_uv ? "property double s\nproperty double t\n" : "", file);
+    for (int a = 0; a < mesh->attribute_count; a++) {
+        (void)fputs("property double ", file);
+        ruga_writer_name(writer, mesh->attribute_name[a]);
+        (void)fputc('\n', file);
+    }
     (void)fprintf(file, "element face %d\nproperty list uchar int vertex_indices\n", mesh->triangle_count);
     (void)fputs(face_uv ? "property list uchar double texcoord\n" : "", file);
     (void)fputs(mesh->face_group ? "property int group\n" : "", file);
@@ -531,6 +590,10 @@ ruga_status ruga_ply_write(const char* path, const ruga_mesh* mesh, const double
             }
             if (vertex_uv) {
                 put_doubles(&writer, mesh->uv + 2 * (size_t)vertex_uv[v], 2);
+            }
+            if (mesh->attribute_count > 0) {
+                put_doubles(&writer, mesh->attribute + (size_t)mesh->attribute_count * v,
+                            mesh->attribute_count);
             }
         }
         write_faces(&writer, mesh, face_uv);

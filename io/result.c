@@ -146,6 +146,19 @@ static bool put_mesh(hid_t file, const ruga_mesh* mesh, const int* source_vertex
              ruga_hdf5_put_texts(file, "/mesh/group_names", mesh->group_count, mesh->group_name)));
 }
 
+static bool put_column(hid_t file, const char* name, int rows, const double* data) {
+    return !data || ruga_hdf5_put_array(file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1,
+                                        (hsize_t[]){(hsize_t)rows}, data);
+}
+
+static bool put_skin(hid_t file, const ruga_result_header* header) {
+    int vertices = header->mesh->vertex_count;
+    return put_column(file, "/mesh/thickness", vertices, header->vertex_thickness) &&
+           put_column(file, "/mesh/young", vertices, header->vertex_young) &&
+           put_column(file, "/mesh/wavelength", vertices, header->vertex_wavelength) &&
+           (!header->vertex_growth || put_reals(file, "/mesh/growth", vertices, 2, header->vertex_growth));
+}
+
 static bool put_lattice(hid_t file, const ruga_lattice* lattice) {
     return put_integers(file, "/lattice/elements", lattice->element_count, lattice->nodes_per_element,
                         lattice->element_node) &&
@@ -200,7 +213,7 @@ static hid_t create_file(const char* name) {
 static bool fill_file(ruga_result* result, const ruga_result_header* header, const int* source_vertex) {
     result->file = create_file(result->temporary);
     if (result->file < 0 || !put_header(result->file, header) ||
-        !put_mesh(result->file, header->mesh, source_vertex) ||
+        !put_mesh(result->file, header->mesh, source_vertex) || !put_skin(result->file, header) ||
         (header->lattice && !put_lattice(result->file, header->lattice))) {
         return false;
     }

@@ -23,6 +23,8 @@ typedef struct ruga_result_header {
     double mesh_unit;
     double wavelength, critical_strain, cluster_sigma, cluster_radius; // for measure; 0 where unknown
     int restart_doubles;                                               // length of the restart vector
+    // Where the skin varies, otherwise NULL: [V] m, [V] Pa, [V][2], and [V] m, local eq. 3
+    const double *vertex_thickness, *vertex_young, *vertex_growth, *vertex_wavelength;
 } ruga_result_header;
 
 // One frame. Pointers to arrays of the caller; lattice_position NULL with interior: none (and embedded).

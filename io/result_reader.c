@@ -24,6 +24,7 @@ struct ruga_result_reader {
     bool has_interior;
     int node_count, element_count, nodes_per_element;
     char* scene_text;
+    double *thickness, *young, *growth, *wavelength; // or NULL
     ruga_result_header header;
 };
 
@@ -219,6 +220,37 @@ static ruga_status get_mesh(ruga_hdf5* hdf5, hid_t file, ruga_mesh* mesh) {
     return status;
 }
 
+// Numbers of the vertices, all above 0; NULL where the file has none.
+static ruga_status get_skin_values(ruga_hdf5* hdf5, const ruga_result_reader* reader, const char* name,
+                                   int columns, double** values) {
+    int rows;
+    if (!exists(reader->file, "/mesh", name)) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(get_reals(hdf5, reader->file, name, columns, &rows, values));
+    bool ok = rows == reader->mesh.vertex_count;
+    for (int i = 0; ok && i < columns * rows; i++) {
+        ok = (*values)[i] > 0 && isfinite((*values)[i]);
+    }
+    return ok ? RUGA_OK
+              : ruga_fail(RUGA_BAD_INPUT,
+                          "%s: %s has another length than the mesh, or a value that is not above 0: "
+                          "the file is damaged",
+                          hdf5->path, name);
+}
+
+static ruga_status get_skin(ruga_hdf5* hdf5, ruga_result_reader* reader) {
+    RUGA_TRY(get_skin_values(hdf5, reader, "/mesh/thickness", 1, &reader->thickness));
+    RUGA_TRY(get_skin_values(hdf5, reader, "/mesh/young", 1, &reader->young));
+    RUGA_TRY(get_skin_values(hdf5, reader, "/mesh/growth", 2, &reader->growth));
+    RUGA_TRY(get_skin_values(hdf5, reader, "/mesh/wavelength", 1, &reader->wavelength));
+    reader->header.vertex_thickness = reader->thickness;
+    reader->header.vertex_young = reader->young;
+    reader->header.vertex_growth = reader->growth;
+    reader->header.vertex_wavelength = reader->wavelength;
+    return RUGA_OK;
+}
+
 // --- Attributes ---
 
 static bool get_hash(hid_t root, const char* name, uint64_t* hash) {
@@ -360,6 +392,7 @@ static ruga_status read_all(ruga_hdf5* hdf5, ruga_result_reader* reader) {
     RUGA_TRY(ruga_hdf5_check(hdf5, open_file(hdf5, reader), RUGA_BAD_INPUT, "cannot be opened"));
     RUGA_TRY(get_header(hdf5, reader));
     RUGA_TRY(get_mesh(hdf5, reader->file, &reader->mesh));
+    RUGA_TRY(get_skin(hdf5, reader));
     RUGA_TRY(get_lattice_shape(hdf5, reader));
     return open_sets(hdf5, reader);
 }
@@ -407,6 +440,10 @@ void ruga_result_reader_close(ruga_result_reader** reader) {
     }
     ruga_hdf5_end(&hdf5);
     ruga_mesh_clear(&r->mesh);
+    ruga_release(r->thickness);
+    ruga_release(r->young);
+    ruga_release(r->growth);
+    ruga_release(r->wavelength);
     ruga_release(r->scene_text);
     ruga_release(r->path);
     ruga_release(r);

@@ -26,9 +26,22 @@ static uint64_t hash_bytes(uint64_t hash, const char* bytes, size_t length) {
 static uint64_t hash_values(const ruga_scene_parts* parts) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (const ruga_scene_value* v = parts->first_value; v; v = v->next) {
-        if (strcmp(v->key, "time.frames") != 0) {
+        // skin.vary itself stands there only where it has no entries, which have keys of their own.
+        if (strcmp(v->key, "time.frames") != 0 && strcmp(v->key, "skin.vary") != 0) {
             hash = hash_bytes(hash, v->key, strlen(v->key) + 1);
             hash = hash_bytes(hash, v->value, strlen(v->value) + 1);
+        }
+    }
+    return hash;
+}
+
+// What attributes and textures hold is not in the keys: a skin that varies is hashed by its values.
+static uint64_t hash_arrays(uint64_t hash, const ruga_skin_def* skin) {
+    const double* const arrays[] = {skin->vertex_thickness, skin->vertex_young, skin->vertex_growth};
+    for (int i = 0; i < 3; i++) {
+        if (arrays[i]) {
+            size_t size = (size_t)skin->vertex_count * (i == 2 ? 2 : 1) * sizeof(double);
+            hash = hash_bytes(hash, (const char*)arrays[i], size);
         }
     }
     return hash;
@@ -53,10 +66,12 @@ static ruga_status build(ruga_yaml_node* root, ruga_pool* tree, const char* dire
     scene->def = ruga_default_model_def();
     parts->source = (ruga_scene_source){.unit = 1, .scale = 1};
     RUGA_TRY(ruga_scene_read_keys(root, parts, &scene->def));
-    RUGA_TRY(ruga_scene_check_keys(root, &parts->source, &scene->def));
+    RUGA_TRY(ruga_scene_check_keys(root, parts, &scene->def));
     RUGA_TRY(keep_text(root, parts, &scene->text));
     scene->hash = hash_values(parts);
     RUGA_TRY(ruga_scene_load_mesh(root, directory, scene));
+    RUGA_TRY(ruga_scene_vary_skin(root, directory, scene));
+    scene->hash = hash_arrays(scene->hash, &scene->def.skin);
     scene->mesh_hash = ruga_mesh_hash(&scene->mesh);
     scene->def.mesh = ruga_mesh_as_def(&scene->mesh);
     return RUGA_OK;

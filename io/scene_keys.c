@@ -231,6 +231,9 @@ static void describe_value(const ruga_key* key, ruga_string* text) {
     case RUGA_KEY_EVERY:
         ruga_string_add(text, "true");
         break;
+    case RUGA_KEY_PAIR:
+        ruga_string_add(text, "%s, or 2 x %s", plain ? "number" : unit, plain ? "number" : unit);
+        break;
     case RUGA_KEY_LATER:
         ruga_string_add(text, "not available yet");
         break;

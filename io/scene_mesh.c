@@ -41,17 +41,22 @@ static ruga_status read_file(const char* path, ruga_mesh* mesh) {
                   : ruga_mesh_read(path, mesh);
 }
 
+ruga_status ruga_scene_path(const char* directory, const char* name, ruga_pool* pool, char** path) {
+    bool relative = name[0] != '/' && directory && directory[0];
+    size_t size = strlen(name) + (relative ? strlen(directory) : 0) + 2;
+    RUGA_TRY(RUGA_POOL_TAKE(pool, *path, size));
+    (void)snprintf(*path, size, "%s%s%s", relative ? directory : "", relative ? "/" : "", name);
+    return RUGA_OK;
+}
+
 static ruga_status read_source(const ruga_yaml_node* node, const ruga_scene_source* source,
                                const char* directory, ruga_pool* pool, ruga_mesh* mesh) {
     if (!source->file) {
         return ruga_yaml_fail_at(ruga_mesh_make(&source->make, mesh), ruga_yaml_find(node, "make"),
                                  "mesh.make");
     }
-    bool relative = source->file[0] != '/' && directory && directory[0];
-    size_t size = strlen(source->file) + (relative ? strlen(directory) : 0) + 2;
     char* path;
-    RUGA_TRY(RUGA_POOL_TAKE(pool, path, size));
-    (void)snprintf(path, size, "%s%s%s", relative ? directory : "", relative ? "/" : "", source->file);
+    RUGA_TRY(ruga_scene_path(directory, source->file, pool, &path));
     return ruga_yaml_fail_at(read_file(path, mesh), ruga_yaml_find(node, "file"), "mesh.file");
 }
 
@@ -90,9 +95,14 @@ static ruga_status drop_unused_vertices(ruga_mesh* mesh, int* dropped) {
     }
     RUGA_TRY_DONE(RUGA_NEW(source, count));
     count = 0;
+    size_t attributes = (size_t)mesh->attribute_count;
     for (int v = 0; v < mesh->vertex_count; v++) {
         if (fresh[v]) {
             memmove(mesh->position + 3 * (size_t)count, mesh->position + 3 * (size_t)v, 3 * sizeof(double));
+            if (attributes > 0) {
+                memmove(mesh->attribute + attributes * (size_t)count,
+                        mesh->attribute + attributes * (size_t)v, attributes * sizeof(double));
+            }
             source[count] = mesh->source_vertex ? mesh->source_vertex[v] : v;
             fresh[v] = count++;
         }
@@ -193,8 +203,8 @@ static ruga_status map_vertices(const ruga_yaml_node* node, const char* shown, i
     return RUGA_OK;
 }
 
-static ruga_status check_vertices(const ruga_yaml_node* node, const char* shown, const ruga_mesh* mesh,
-                                  ruga_region* region) {
+ruga_status ruga_scene_map_vertices(const ruga_yaml_node* node, const char* shown, const ruga_mesh* mesh,
+                                    ruga_region* region) {
     int(*pairs)[2] = NULL;
     RUGA_TRY(RUGA_NEW(pairs, mesh->vertex_count));
     int count = 0;
@@ -270,7 +280,7 @@ static ruga_status check_regions(const ruga_yaml_node* list, ruga_scene* scene) 
         const ruga_yaml_node* node = ruga_yaml_find(item, "region");
         ruga_handle_def* handle = (ruga_handle_def*)&scene->def.handles[i]; // the scene's own array
         if (handle->region.kind == RUGA_REGION_VERTICES) {
-            status = check_vertices(node, shown, &scene->mesh, &handle->region);
+            status = ruga_scene_map_vertices(node, shown, &scene->mesh, &handle->region);
         }
         if (status == RUGA_OK) {
             status = check_selection(node, shown, scene, handle, selected);

@@ -371,6 +371,18 @@ static ruga_status read_vertices(reader* r, const place* p, ruga_string* value) 
     return RUGA_OK;
 }
 
+static ruga_status read_pair(const place* p, ruga_string* value) {
+    ruga_scene_pair pair = {.count = 1};
+    if (p->node->kind == RUGA_YAML_LIST) {
+        pair.count = 2;
+        RUGA_TRY(read_row(p, p->node, 2, pair.value, value));
+    } else {
+        RUGA_TRY(read_row(p, p->node, 1, pair.value, value));
+    }
+    memcpy(p->target + p->key->offset, &pair, sizeof pair);
+    return RUGA_OK;
+}
+
 static ruga_status read_every(const place* p, ruga_string* value) {
     if (p->node->kind != RUGA_YAML_SCALAR || strcmp(p->node->text, "true") != 0) {
         return fail_kind(p, p->node, "true");
@@ -409,6 +421,8 @@ static ruga_status read_value(reader* r, const place* p, ruga_string* value) {
         return read_vertices(r, p, value);
     case RUGA_KEY_EVERY:
         return read_every(p, value);
+    case RUGA_KEY_PAIR:
+        return read_pair(p, value);
     case RUGA_KEY_SECTION:
     case RUGA_KEY_ENTRIES:
     case RUGA_KEY_LATER:
@@ -504,45 +518,65 @@ static ruga_status read_absent(reader* r, const place* p, const ruga_yaml_node* 
     return read_leaf(r, &filled, false);
 }
 
+// The structs of a list's entries, at their defaults, and the size of one.
+static ruga_status take_entries(reader* r, const char* path, int count, char** first, size_t* size) {
+    ruga_pool* pool = &r->parts->pool;
+    if (strcmp(path, "handles") == 0) {
+        ruga_handle_def* handle;
+        RUGA_TRY(RUGA_POOL_TAKE(pool, handle, count));
+        for (int i = 0; i < count; i++) {
+            handle[i] = ruga_default_handle_def();
+        }
+        r->def->handles = handle;
+        r->def->handle_count = count;
+        *first = (char*)handle;
+        *size = sizeof *handle;
+    } else if (strcmp(path, "prescribed") == 0) {
+        ruga_keyframe_def* keyframe;
+        RUGA_TRY(RUGA_POOL_TAKE(pool, keyframe, count));
+        for (int i = 0; i < count; i++) {
+            keyframe[i] = ruga_default_keyframe_def();
+        }
+        r->def->keyframes = keyframe;
+        r->def->keyframe_count = count;
+        *first = (char*)keyframe;
+        *size = sizeof *keyframe;
+    } else {
+        ruga_scene_vary* vary;
+        RUGA_TRY(RUGA_POOL_TAKE(pool, vary, count));
+        for (int i = 0; i < count; i++) {
+            vary[i] = (ruga_scene_vary){.region = {.kind = RUGA_REGION_ALL}};
+        }
+        r->parts->vary = vary;
+        r->parts->vary_count = count;
+        *first = (char*)vary;
+        *size = sizeof *vary;
+    }
+    return RUGA_OK;
+}
+
 static ruga_status read_entries(reader* r, const place* p) {
     const ruga_yaml_node* node = p->node;
+    char* entry;
+    size_t size;
     if (node->kind != RUGA_YAML_LIST) {
         return fail_kind(p, node, "a list of maps");
     }
-    bool handles = strcmp(p->key->path, "handles") == 0;
-    ruga_handle_def* handle = NULL;
-    ruga_keyframe_def* keyframe = NULL;
-    ruga_pool* pool = &r->parts->pool;
-    if (handles) {
-        RUGA_TRY(RUGA_POOL_TAKE(pool, handle, node->count));
-        r->def->handles = handle;
-        r->def->handle_count = node->count;
-    } else {
-        RUGA_TRY(RUGA_POOL_TAKE(pool, keyframe, node->count));
-        r->def->keyframes = keyframe;
-        r->def->keyframe_count = node->count;
-    }
+    RUGA_TRY(take_entries(r, p->key->path, node->count, &entry, &size));
     const ruga_yaml_node* item = node->first;
     for (int i = 0; i < node->count; i++, item = item->next) {
         char section[PATH_LENGTH], shown[PATH_LENGTH];
         (void)snprintf(section, sizeof section, "%s.N", p->key->path);
         (void)snprintf(shown, sizeof shown, "%.100s.%d", p->shown, i);
-        if (handles) {
-            handle[i] = ruga_default_handle_def();
-        } else {
-            keyframe[i] = ruga_default_keyframe_def();
-        }
-        void* target = handles ? (void*)&handle[i] : (void*)&keyframe[i];
-        RUGA_TRY(read_section(r, section, shown, item, item, target));
+        RUGA_TRY(read_section(r, section, shown, item, item, entry + size * (size_t)i));
     }
     return node->count > 0 ? RUGA_OK : record(r, p->shown, "none", "", true);
 }
 
 // The one word that may stand in place of a section's map; NULL where there is none.
 static const char* word_of_section(const ruga_key* key) {
-    return strcmp(key->path, "interior") == 0           ? "none"
-           : strcmp(key->path, "handles.N.region") == 0 ? "all"
-                                                        : NULL;
+    bool region = strcmp(key->path, "handles.N.region") == 0 || strcmp(key->path, "skin.vary.N.region") == 0;
+    return strcmp(key->path, "interior") == 0 ? "none" : region ? "all" : NULL;
 }
 
 static ruga_status read_subsection(reader* r, const place* p) {

@@ -19,18 +19,30 @@ typedef struct ruga_scene_value {
 typedef struct ruga_scene_parts {
     ruga_pool pool; // strings and arrays of the def
     ruga_scene_source source;
+    int vary_count;
+    ruga_scene_vary* vary;
     ruga_scene_value *first_value, *last_value;
     int warning_capacity;
 } ruga_scene_parts;
 
-// Every key by itself: kind, dimension, range, default. Fills def (without its mesh), source and values.
+// Every key by itself: kind, dimension, range, default. Fills def (without its mesh), source, vary and
+// values.
 ruga_status ruga_scene_read_keys(const ruga_yaml_node* root, ruga_scene_parts* parts, ruga_model_def* def);
 
 // What keys demand of one another; sets the kinds of handles and regions.
-ruga_status ruga_scene_check_keys(const ruga_yaml_node* root, ruga_scene_source* source, ruga_model_def* def);
+ruga_status ruga_scene_check_keys(const ruga_yaml_node* root, ruga_scene_parts* parts, ruga_model_def* def);
 
 // Reads or makes the mesh, scales, takes groups, remeshes, asks the doctor; then regions against that mesh.
 ruga_status ruga_scene_load_mesh(const ruga_yaml_node* root, const char* directory, ruga_scene* scene);
+
+// The arrays of a skin that varies, on the mesh as it is simulated.
+ruga_status ruga_scene_vary_skin(const ruga_yaml_node* root, const char* directory, ruga_scene* scene);
+
+// Vertices that a region lists by their number in the file become those of the mesh.
+ruga_status ruga_scene_map_vertices(const ruga_yaml_node* node, const char* shown, const ruga_mesh* mesh,
+                                    ruga_region* region);
+// A file that the scene names, from the scene's folder.
+ruga_status ruga_scene_path(const char* directory, const char* name, ruga_pool* pool, char** path);
 
 // Adds to scene->warning.
 ruga_status ruga_scene_warn(ruga_scene* scene, const char* format, ...) __attribute__((format(printf, 2, 3)));

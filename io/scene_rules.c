@@ -179,9 +179,49 @@ static ruga_status check_handle(const ruga_yaml_node* node, const char* shown, b
                : RUGA_OK;
 }
 
-ruga_status ruga_scene_check_keys(const ruga_yaml_node* root, ruga_scene_source* source,
-                                  ruga_model_def* def) {
-    RUGA_TRY(check_source(ruga_yaml_find(root, "mesh"), source));
+// A region alone sets one value; whatever goes from one to another needs both.
+static ruga_status check_vary(const ruga_yaml_node* node, const char* shown, ruga_scene_vary* vary) {
+    static const char* const grades[] = {"gradient", "attribute", "texture", NULL};
+    static const char* const places[] = {"region", "gradient", "attribute", "texture", NULL};
+    static const char* const values[RUGA_VARY_VALUES] = {"thickness", "young", "growth_u", "growth_v"};
+    const ruga_yaml_node* region = ruga_yaml_find(node, "region");
+    int which, count = 0;
+    bool graded = vary->attribute || vary->texture || ruga_yaml_find(node, "gradient");
+    RUGA_TRY(exactly_one(node, shown, graded ? grades : places, &which));
+    if (region) {
+        char path[48];
+        (void)snprintf(path, sizeof path, "%.40s.region", shown);
+        RUGA_TRY(check_region(region, path, &vary->region));
+    }
+    vary->has_gradient = ruga_yaml_find(node, "gradient") != NULL;
+    if (vary->has_gradient && memcmp(vary->from, vary->to, sizeof vary->from) == 0) {
+        return ruga_yaml_fail(ruga_yaml_find(node, "gradient"), shown, "the gradient ends where it begins");
+    }
+    for (int i = 0; i < RUGA_VARY_VALUES; i++) {
+        const ruga_yaml_node* value = ruga_yaml_find(node, values[i]);
+        count += value != NULL;
+        if (value && vary->value[i].count != (graded ? 2 : 1)) {
+            return ruga_yaml_fail(
+                value, shown,
+                graded ? "%s needs two values here: [first, second] of the %s"
+                       : "%s takes one value in a region; two go with gradient, attribute or texture",
+                values[i], graded ? grades[which] : "");
+        }
+    }
+    return count > 0 ? RUGA_OK
+                     : ruga_yaml_fail(node, shown,
+                                      "there is nothing that it sets: thickness, young, growth_u, growth_v");
+}
+
+ruga_status ruga_scene_check_keys(const ruga_yaml_node* root, ruga_scene_parts* parts, ruga_model_def* def) {
+    RUGA_TRY(check_source(ruga_yaml_find(root, "mesh"), &parts->source));
+    const ruga_yaml_node* varies = ruga_yaml_find(ruga_yaml_find(root, "skin"), "vary");
+    const ruga_yaml_node* entry = varies ? varies->first : NULL;
+    for (int i = 0; i < parts->vary_count; i++, entry = entry->next) {
+        char shown[40];
+        (void)snprintf(shown, sizeof shown, "skin.vary.%d", i);
+        RUGA_TRY(check_vary(entry, shown, &parts->vary[i]));
+    }
     if (def->has_interior) {
         RUGA_TRY(check_interior(root, def));
         RUGA_TRY(check_coupling(root, &def->coupling));

@@ -18,6 +18,7 @@
 #define SOURCE(field)   IN(ruga_scene_source, field)
 #define HANDLE(field)   IN(ruga_handle_def, field)
 #define KEYFRAME(field) IN(ruga_keyframe_def, field)
+#define VARY(field)     IN(ruga_scene_vary, field)
 
 #define SECTION(path, fallback, meaning) {path, RUGA_KEY_SECTION, 0, -1, "", fallback, ANY, NULL, meaning}
 #define ENTRIES(path, fallback, meaning) {path, RUGA_KEY_ENTRIES, 0, -1, "", fallback, ANY, NULL, meaning}
@@ -34,6 +35,22 @@
     {path, RUGA_KEY_CHOICE, 1, offset, "", fallback, ANY, choices, meaning}
 #define OTHER(path, kind, offset, dimension, fallback, meaning) \
     {path, kind, 1, offset, dimension, fallback, ANY, NULL, meaning}
+#define PAIR(path, offset, dimension, range, meaning) \
+    {path, RUGA_KEY_PAIR, 1, offset, dimension, NULL, range, NULL, meaning}
+
+// The keys of a region; IN_ENTRY gives the offset of a field of the entry that has it.
+#define REGION(path, IN_ENTRY) \
+    ROWS(path ".box", 2, IN_ENTRY(region.min), "m", "Two opposite corners, the smaller one first."), \
+    SECTION(path ".sphere", NULL, "What lies within `radius` of `center`."), \
+    NUMBERS(path ".sphere.center", 3, IN_ENTRY(region.center), "m", "[0, 0, 0]", ANY, "Centre."), \
+    NUMBER(path ".sphere.radius", IN_ENTRY(region.radius), "m", REQUIRED, POSITIVE, "Radius."), \
+    SECTION(path ".plane", NULL, "What lies on the plane or on the side that its normal points to."), \
+    NUMBERS(path ".plane.center", 3, IN_ENTRY(region.center), "m", "[0, 0, 0]", ANY, "A point of the plane."), \
+    NUMBERS(path ".plane.normal", 3, IN_ENTRY(region.normal), "1", REQUIRED, ANY, "Normal, of any length but 0."), \
+    OTHER(path ".group", RUGA_KEY_TEXT, IN_ENTRY(region.group), "", NULL, "The faces of a group of the mesh."), \
+    OTHER(path ".vertices", RUGA_KEY_VERTICES, IN_ENTRY(region), "", NULL, \
+          "Vertices by their number in the file, from 0; for a made shape, of the mesh itself."), \
+    OTHER(path ".all", RUGA_KEY_EVERY, -1, "", NULL, "true: everything.")
 // clang-format on
 
 const ruga_key ruga_keys[] = {
@@ -81,6 +98,31 @@ const ruga_key ruga_keys[] = {
         "carries along, over the time `relaxation`."),
     NUMBER("skin.relaxation", MODEL(skin.relaxation), "s", "20 ms", POSITIVE,
            "Relaxation time of damped motion."),
+    ENTRIES("skin.vary", "(none)",
+            "Where the skin differs from the values above: each entry with a region, or one of gradient, "
+            "attribute, texture (in a region, or everywhere), and with one or more of thickness, young, "
+            "growth_u, growth_v. Of several at one place the last counts. Values belong to vertices and "
+            "are linear in between."),
+    SECTION("skin.vary.N.region", NULL,
+            "A part of the rest shape, as in handles; there each value is one number, unless one of the "
+            "three below says how far it is from its first to its second."),
+    REGION("skin.vary.N.region", VARY),
+    SECTION("skin.vary.N.gradient", NULL,
+            "From the first value to the second along a straight line, held before and behind it."),
+    NUMBERS("skin.vary.N.gradient.from", 3, VARY(from), "m", REQUIRED, ANY, "Where the first value holds."),
+    NUMBERS("skin.vary.N.gradient.to", 3, VARY(to), "m", REQUIRED, ANY, "Where the second value holds."),
+    OTHER("skin.vary.N.attribute", RUGA_KEY_TEXT, VARY(attribute), "", NULL,
+          "A property of the vertices of a .ply file by its name: the first value where it is 0, the "
+          "second where it is 1, and on beyond. So thickness: [0, 1 mm] takes it as a thickness in mm."),
+    OTHER("skin.vary.N.texture", RUGA_KEY_TEXT, VARY(texture), "", NULL,
+          "A greyscale PNG of 8 or 16 bits, relative to the scene file's folder, over the mesh's uv (0, 0 "
+          "at the lower left, of glTF at the upper left; held outside): the first value where it is black, "
+          "the second where it is white."),
+    PAIR("skin.vary.N.thickness", VARY(value[0]), "m", NOT_NEGATIVE, "Thickness."),
+    PAIR("skin.vary.N.young", VARY(value[1]), "Pa", NOT_NEGATIVE, "Young's modulus."),
+    PAIR("skin.vary.N.growth_u", VARY(value[2]), "1", NOT_NEGATIVE,
+         "Growth along the skin's first direction."),
+    PAIR("skin.vary.N.growth_v", VARY(value[3]), "1", NOT_NEGATIVE, "Growth across it."),
 
     SECTION("interior", "{}", "The solid inside, or the word none for a free shell."),
     NUMBER("interior.young", MODEL(interior.young), "Pa", "0.5 MPa", POSITIVE, "Young's modulus."),
@@ -156,21 +198,7 @@ const ruga_key ruga_keys[] = {
     SECTION("handles.N.region", REQUIRED,
             "A part of the rest shape, in metres after `unit` and `scale`: one of the keys below, or the "
             "word all."),
-    ROWS("handles.N.region.box", 2, HANDLE(region.min), "m", "Two opposite corners, the smaller one first."),
-    SECTION("handles.N.region.sphere", NULL, "What lies within `radius` of `center`."),
-    NUMBERS("handles.N.region.sphere.center", 3, HANDLE(region.center), "m", "[0, 0, 0]", ANY, "Centre."),
-    NUMBER("handles.N.region.sphere.radius", HANDLE(region.radius), "m", REQUIRED, POSITIVE, "Radius."),
-    SECTION("handles.N.region.plane", NULL,
-            "What lies on the plane or on the side that its normal points to."),
-    NUMBERS("handles.N.region.plane.center", 3, HANDLE(region.center), "m", "[0, 0, 0]", ANY,
-            "A point of the plane."),
-    NUMBERS("handles.N.region.plane.normal", 3, HANDLE(region.normal), "1", REQUIRED, ANY,
-            "Normal, of any length but 0."),
-    OTHER("handles.N.region.group", RUGA_KEY_TEXT, HANDLE(region.group), "", NULL,
-          "The faces of a group of the mesh."),
-    OTHER("handles.N.region.vertices", RUGA_KEY_VERTICES, HANDLE(region), "", NULL,
-          "Vertices by their number in the file, from 0; for a made shape, of the mesh itself."),
-    OTHER("handles.N.region.all", RUGA_KEY_EVERY, -1, "", NULL, "true: everything."),
+    REGION("handles.N.region", HANDLE),
     OTHER("handles.N.fix", RUGA_KEY_AXES, HANDLE(axes), "", NULL,
           "The region keeps its rest position: true, or only along these of [x, y, z]."),
     SECTION("handles.N.move", NULL, "The region is rotated, then translated."),

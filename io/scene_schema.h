@@ -27,6 +27,7 @@ typedef enum ruga_key_kind {
     RUGA_KEY_AXES,     // true, or a list of x, y, z: bool [3]
     RUGA_KEY_VERTICES, // a list of vertex numbers: ruga_region
     RUGA_KEY_EVERY,    // true and nothing else, where the key alone says it all
+    RUGA_KEY_PAIR,     // one quantity or a list of two: ruga_scene_pair
     RUGA_KEY_LATER,    // belongs to a later version
 } ruga_key_kind;
 
@@ -49,11 +50,28 @@ typedef struct ruga_scene_source {
     double remesh_edge; // m; 0 = none
 } ruga_scene_source;
 
+// The first and second value of an entry of skin.vary; count 0 = it does not set this one.
+typedef struct ruga_scene_pair {
+    int count;
+    double value[2];
+} ruga_scene_pair;
+
+enum { RUGA_VARY_THICKNESS, RUGA_VARY_YOUNG, RUGA_VARY_GROWTH_U, RUGA_VARY_GROWTH_V, RUGA_VARY_VALUES };
+
+// An entry of skin.vary.
+typedef struct ruga_scene_vary {
+    ruga_region region;
+    bool has_gradient;
+    double from[3], to[3];
+    char *attribute, *texture; // or NULL
+    ruga_scene_pair value[RUGA_VARY_VALUES];
+} ruga_scene_vary;
+
 typedef struct ruga_key {
     const char* path; // "skin.thickness", "handles.N.region.box"
     ruga_key_kind kind;
     int count;
-    int offset; // bytes in the ruga_scene_source, ruga_handle_def, ruga_keyframe_def or ruga_model_def; -1 =
+    int offset; // bytes in ruga_scene_source, _scene_vary, _handle_def, _keyframe_def or _model_def; -1 =
                 // none
     const char* dimension; // "" where it is no quantity
     // In YAML. NULL: none, the key chooses or must be given. In parentheses: what its absence means, in

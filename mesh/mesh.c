@@ -27,6 +27,8 @@ void ruga_mesh_clear(ruga_mesh* mesh) {
     ruga_release(mesh->face_group);
     ruga_release(mesh->polygon);
     ruga_release(mesh->source_vertex);
+    release_names(mesh->attribute_name, mesh->attribute_count);
+    ruga_release(mesh->attribute);
     memset(mesh, 0, sizeof *mesh);
 }
 
@@ -55,6 +57,25 @@ static ruga_status copy_names(const char* const* source, int count, char*** name
     return RUGA_OK;
 }
 
+int ruga_mesh_find_attribute(const ruga_mesh* mesh, const char* name) {
+    for (int a = 0; a < mesh->attribute_count; a++) {
+        if (strcmp(mesh->attribute_name[a], name) == 0) {
+            return a;
+        }
+    }
+    return -1;
+}
+
+ruga_status ruga_mesh_allocate_attributes(const ruga_mesh* source, ruga_mesh* mesh) {
+    if (source->attribute_count == 0) {
+        return RUGA_OK;
+    }
+    mesh->attribute_count = source->attribute_count;
+    RUGA_TRY(copy_names((const char* const*)source->attribute_name, source->attribute_count,
+                        &mesh->attribute_name));
+    return RUGA_NEW(mesh->attribute, (size_t)mesh->attribute_count * (size_t)mesh->vertex_count);
+}
+
 ruga_status ruga_mesh_copy(const ruga_mesh* source, ruga_mesh* copy) {
     memset(copy, 0, sizeof *copy);
     ruga_status status = RUGA_OK;
@@ -73,6 +94,11 @@ ruga_status ruga_mesh_copy(const ruga_mesh* source, ruga_mesh* copy) {
         copy->group_count = source->group_count;
         RUGA_TRY_DONE(
             copy_names((const char* const*)source->group_name, source->group_count, &copy->group_name));
+    }
+    RUGA_TRY_DONE(ruga_mesh_allocate_attributes(source, copy));
+    if (source->attribute_count > 0) {
+        memcpy(copy->attribute, source->attribute,
+               (size_t)source->attribute_count * (size_t)source->vertex_count * sizeof *copy->attribute);
     }
 done:
     if (status != RUGA_OK) {
@@ -241,11 +267,17 @@ static int number_used(const ruga_mesh* mesh, const int* group_number, const int
 static ruga_status extract_vertices(const ruga_mesh* mesh, const int* number, ruga_mesh* part) {
     RUGA_TRY(RUGA_NEW(part->position, 3 * (size_t)part->vertex_count));
     RUGA_TRY(RUGA_NEW(part->source_vertex, part->vertex_count));
+    RUGA_TRY(ruga_mesh_allocate_attributes(mesh, part));
+    size_t attributes = (size_t)mesh->attribute_count;
     for (int v = 0; v < mesh->vertex_count; v++) {
         if (number[v] >= 0) {
             memcpy(part->position + 3 * (size_t)number[v], mesh->position + 3 * (size_t)v,
                    3 * sizeof(double));
             part->source_vertex[number[v]] = mesh->source_vertex ? mesh->source_vertex[v] : v;
+            if (attributes > 0) {
+                memcpy(part->attribute + attributes * (size_t)number[v],
+                       mesh->attribute + attributes * (size_t)v, attributes * sizeof *part->attribute);
+            }
         }
     }
     return RUGA_OK;
@@ -417,6 +449,21 @@ void ruga_mesh_vertex_areas(const ruga_mesh* mesh, double* area) {
         double third = ruga_norm(n) / 6;
         for (int i = 0; i < 3; i++) {
             area[mesh->triangle[3 * (size_t)f + (size_t)i]] += third;
+        }
+    }
+}
+
+// From the first corner on, since (x + x + x) / 3 may differ from x in the last bit.
+void ruga_mesh_triangle_averages(const ruga_mesh* mesh, int components, const double* vertex,
+                                 double* triangle) {
+    size_t n = (size_t)components;
+    for (size_t f = 0; f < (size_t)mesh->triangle_count; f++) {
+        const int* corner = mesh->triangle + 3 * f;
+        for (size_t c = 0; c < n; c++) {
+            double first = vertex[n * (size_t)corner[0] + c];
+            double further =
+                (vertex[n * (size_t)corner[1] + c] - first) + (vertex[n * (size_t)corner[2] + c] - first);
+            triangle[n * f + c] = first + further / 3;
         }
     }
 }

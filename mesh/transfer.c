@@ -8,6 +8,9 @@
 // vertex lies beyond a seam, and the uv is taken at a point a little towards the centroid or, failing that,
 // is the prediction. So each new face lies within one chart, continued past the seam where it overhangs, and
 // vertices away from seams have one uv. Agreement: within half an edge, measured in uv.
+//
+// Attributes have no charts: a new vertex takes those of the nearest point of the old surface, linear in its
+// face.
 #include "mesh/transfer.h"
 
 #include "core/memory.h"
@@ -63,6 +66,31 @@ static void put_on_old_vertices(transfer* t) {
                 memcpy(x, p, 3 * sizeof *x);
                 t->mesh->source_vertex[v] =
                     t->old->source_vertex ? t->old->source_vertex[corner[i]] : corner[i];
+            }
+        }
+    }
+}
+
+// ---- attributes
+
+static void transfer_attributes(transfer* t) {
+    const ruga_mesh* old = t->old;
+    size_t count = (size_t)old->attribute_count;
+    for (size_t v = 0; v < (size_t)t->mesh->vertex_count; v++) {
+        const int* corner = old->triangle + 3 * (size_t)t->vertex.face[v];
+        const double* p[3];
+        double n[3], *to = t->mesh->attribute + count * v;
+        for (int i = 0; i < 3; i++) {
+            p[i] = old->position + 3 * (size_t)corner[i];
+        }
+        ruga_triangle_normal(p[0], p[1], p[2], n);
+        memset(to, 0, count * sizeof *to);
+        for (int i = 0; i < 3; i++) {
+            double part[3];
+            ruga_triangle_normal(t->vertex.point + 3 * v, p[(i + 1) % 3], p[(i + 2) % 3], part);
+            double weight = ruga_dot(part, n) / ruga_dot(n, n);
+            for (size_t a = 0; a < count; a++) {
+                to[a] += weight * old->attribute[count * (size_t)corner[i] + a];
             }
         }
     }
@@ -215,6 +243,10 @@ ruga_status ruga_mesh_transfer(const ruga_mesh* old, double edge, ruga_mesh* mes
     RUGA_TRY_DONE(nearest_find(locator, mesh->vertex_count, mesh->position, &t.vertex));
     RUGA_TRY_DONE(RUGA_NEW(mesh->source_vertex, mesh->vertex_count));
     put_on_old_vertices(&t);
+    RUGA_TRY_DONE(ruga_mesh_allocate_attributes(old, mesh));
+    if (old->attribute_count > 0) {
+        transfer_attributes(&t);
+    }
     if (old->uv && old->uv_triangle) {
         RUGA_TRY_DONE(find_queries(&t, locator));
         RUGA_TRY_DONE(transfer_uv(&t));

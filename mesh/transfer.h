@@ -8,8 +8,8 @@
 #include "mesh/mesh.h"
 
 // Fills source_vertex (of vertices that are within 1e-9 `edge` of an old one, which they are put on exactly)
-// and, where the old mesh has them, uv and uv_triangle of `mesh`, whose positions and triangles are set.
-// `edge` (m) is the length of the new edges.
+// and, where the old mesh has them, attributes (those of the nearest point), uv and uv_triangle of `mesh`,
+// whose positions and triangles are set. `edge` (m) is the length of the new edges.
 ruga_status ruga_mesh_transfer(const ruga_mesh* old, double edge, ruga_mesh* mesh);
 
 #endif

@@ -55,8 +55,8 @@ double ruga_membrane_grown_length(const double* const x[3], const double edge[3]
     return hypot(growth[0] * ruga_dot(edge, u), growth[1] * ruga_dot(edge, v));
 }
 
-double ruga_membrane_rest_create(const double* const x[3], const ruga_skin_def* skin, double thickness,
-                                 double young, ruga_membrane_rest* rest) {
+double ruga_membrane_rest_create(const double* const x[3], double poisson, const double growth[2],
+                                 double thickness, double young, ruga_membrane_rest* rest) {
     double u[3], v[3], e1[3], e2[3];
     double area = plane_axes(x, u, v);
     double longest =
@@ -66,11 +66,11 @@ double ruga_membrane_rest_create(const double* const x[3], const ruga_skin_def* 
     }
     ruga_subtract(x[1], x[0], e1);
     ruga_subtract(x[2], x[0], e2);
-    double u1 = skin->growth[0] * ruga_dot(e1, u), v1 = skin->growth[1] * ruga_dot(e1, v);
-    double u2 = skin->growth[0] * ruga_dot(e2, u), v2 = skin->growth[1] * ruga_dot(e2, v);
+    double u1 = growth[0] * ruga_dot(e1, u), v1 = growth[1] * ruga_dot(e1, v);
+    double u2 = growth[0] * ruga_dot(e2, u), v2 = growth[1] * ruga_dot(e2, v);
     double determinant = u1 * v2 - u2 * v1;
-    area *= skin->growth[0] * skin->growth[1];
-    double nu = skin->poisson;
+    area *= growth[0] * growth[1];
+    double nu = poisson;
     *rest = (ruga_membrane_rest){
         .slope = {{v2 / determinant, -u2 / determinant}, {-v1 / determinant, u1 / determinant}},
         .stretch = area * young * thickness / (1 - nu * nu),

@@ -21,8 +21,8 @@ typedef struct ruga_membrane_rest {
 
 // Rest data of the triangle with corners `x`. Returns its area A after growth, 0 where it has none (`rest` is
 // then not set).
-double ruga_membrane_rest_create(const double* const x[3], const ruga_skin_def* skin, double thickness,
-                                 double young, ruga_membrane_rest* rest);
+double ruga_membrane_rest_create(const double* const x[3], double poisson, const double growth[2],
+                                 double thickness, double young, ruga_membrane_rest* rest);
 
 // Length of the rest vector `edge`, in the plane of the triangle with corners `x`, after growth.
 double ruga_membrane_grown_length(const double* const x[3], const double edge[3], const double growth[2]);

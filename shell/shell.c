@@ -78,8 +78,10 @@ static ruga_status check_skin(const ruga_shell_material* material) {
     if (!material->young) {
         RUGA_TRY(check_positive(skin->young, "young", " Pa"));
     }
-    RUGA_TRY(check_positive(skin->growth[0], "growth[0]", ""));
-    RUGA_TRY(check_positive(skin->growth[1], "growth[1]", ""));
+    if (!material->growth) {
+        RUGA_TRY(check_positive(skin->growth[0], "growth[0]", ""));
+        RUGA_TRY(check_positive(skin->growth[1], "growth[1]", ""));
+    }
     if (!(skin->poisson > -1 && skin->poisson < 0.5)) {
         return ruga_fail(RUGA_BAD_INPUT, "skin.poisson is %g: it must be above -1 and below 0.5",
                          skin->poisson);
@@ -96,6 +98,10 @@ static double thickness_of(const ruga_shell_material* material, int f) {
 
 static double young_of(const ruga_shell_material* material, int f) {
     return material->young ? material->young[f] : material->skin.young;
+}
+
+static const double* growth_of(const ruga_shell_material* material, int f) {
+    return material->growth ? material->growth + 2 * (size_t)f : material->skin.growth;
 }
 
 static double bending_stiffness(const ruga_shell_material* material, int f) {
@@ -136,10 +142,15 @@ static ruga_status set_triangles(ruga_shell* shell, const ruga_mesh* mesh,
             return fail_at_face(RUGA_BAD_INPUT, mesh, f,
                                 "has a Young's modulus that is not above 0: give it one in Pa");
         }
-        const double* x[3];
+        const double *x[3], *growth = growth_of(material, f);
+        if (!(growth[0] > 0 && growth[1] > 0) || !isfinite(growth[0] * growth[1])) {
+            return fail_at_face(RUGA_BAD_INPUT, mesh, f,
+                                "has a growth that is not above 0: 1 leaves lengths alone");
+        }
         memcpy(shell->triangle[f], mesh->triangle + 3 * (size_t)f, sizeof shell->triangle[f]);
         corners(shell->triangle[f], mesh->position, x);
-        area[f] = ruga_membrane_rest_create(x, &material->skin, h, young, &shell->triangle_rest[f]);
+        area[f] =
+            ruga_membrane_rest_create(x, material->skin.poisson, growth, h, young, &shell->triangle_rest[f]);
         if (area[f] == 0) {
             return fail_at_face(RUGA_BAD_MESH, mesh, f, "has no area: delete or collapse it, or remesh");
         }
@@ -159,7 +170,7 @@ static void set_hinge(ruga_shell* shell, const ruga_mesh* mesh, const ruga_shell
     for (int i = 0; i < 2; i++) {
         const double* corner[3];
         corners(shell->triangle[side[i]], mesh->position, corner);
-        length += 0.5 * ruga_membrane_grown_length(corner, edge, material->skin.growth);
+        length += 0.5 * ruga_membrane_grown_length(corner, edge, growth_of(material, side[i]));
     }
     double a0 = area[side[0]], a1 = area[side[1]];
     double softness = a0 / bending_stiffness(material, side[0]) + a1 / bending_stiffness(material, side[1]);

@@ -12,11 +12,13 @@
 
 typedef struct ruga_shell ruga_shell;
 
-// Per-triangle material allowed: arrays [F], or NULL to use the skin's single value (later: skins that vary).
+// Material of each triangle: arrays [F], or NULL to use the skin's single value. The arrays over vertices of
+// the skin's def are not looked at: ruga_mesh_triangle_averages makes triangles' values of them.
 typedef struct ruga_shell_material {
     ruga_skin_def skin;
     const double* thickness; // [F] m, or NULL
     const double* young;     // [F] Pa, or NULL
+    const double* growth;    // [F][2], or NULL
 } ruga_shell_material;
 
 // RUGA_BAD_INPUT or RUGA_BAD_MESH names the field, or the face and where it is. Nothing of the arguments is kept.

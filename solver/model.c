@@ -26,11 +26,12 @@ static bool positive(double value) {
 static ruga_status check_material(const ruga_model_def* def) {
     const ruga_skin_def* s = &def->skin;
     const ruga_interior_def* q = &def->interior;
-    RUGA_TRY(require(positive(s->thickness), "skin.thickness", s->thickness, "above 0"));
-    RUGA_TRY(require(positive(s->young), "skin.young", s->young, "above 0"));
+    RUGA_TRY(
+        require(s->vertex_thickness || positive(s->thickness), "skin.thickness", s->thickness, "above 0"));
+    RUGA_TRY(require(s->vertex_young || positive(s->young), "skin.young", s->young, "above 0"));
     RUGA_TRY(require(s->poisson > -1 && s->poisson < 0.5, "skin.poisson", s->poisson, "between -1 and 0.5"));
     RUGA_TRY(require(s->density >= 0 && isfinite(s->density), "skin.density", s->density, "0 or above"));
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2 && !s->vertex_growth; i++) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
     }
     RUGA_TRY(require(s->motion == RUGA_SKIN_STATIC || positive(s->relaxation), "skin.relaxation", s->relaxation,
@@ -194,8 +195,9 @@ static ruga_status build_clusters(ruga_model* model) {
     c->radius = c->radius > 0 ? c->radius : radius;
     c->sigma = c->sigma > 0 ? c->sigma : sigma;
     RUGA_TRY(ruga_progress("placing clusters", 0));
-    RUGA_TRY(ruga_clusters_create(&model->mesh, &model->connectivity, c->radius, c->sigma, c->count,
-                                  model->solver.seed, &model->clusters));
+    RUGA_TRY(ruga_clusters_create_local(&model->mesh, &model->connectivity, c->radius, c->sigma,
+                                        model->variation.scale, c->count, model->solver.seed,
+                                        &model->clusters));
     c->count = model->clusters.count;
     if (c->kind == RUGA_COUPLING_SPECTRAL) {
         ruga_clusters_clear(&model->clusters);
@@ -205,31 +207,64 @@ static ruga_status build_clusters(ruga_model* model) {
     return RUGA_OK;
 }
 
+// a = E*_q k / 4, b = E*_q / (4 k), k = 2 pi / lambda.
+static double foundation_a(double modulus, double wavelength) {
+    double k = 2 * RUGA_PI / wavelength;
+    return modulus * k / 4;
+}
+
+static double foundation_b(double modulus, double wavelength) {
+    double k = 2 * RUGA_PI / wavelength;
+    return modulus / (4 * k);
+}
+
+static ruga_status build_local_foundation(ruga_model* model, double modulus) {
+    ruga_status status = RUGA_OK;
+    double *a = NULL, *b = NULL;
+    int vertices = model->mesh.vertex_count;
+    RUGA_TRY_DONE(RUGA_NEW(a, vertices));
+    RUGA_TRY_DONE(RUGA_NEW(b, vertices));
+    for (int v = 0; v < vertices; v++) {
+        a[v] = foundation_a(modulus, model->variation.wavelength[v]);
+        b[v] = foundation_b(modulus, model->variation.wavelength[v]);
+    }
+    RUGA_TRY_DONE(ruga_foundation_create_local(&model->mesh, &model->connectivity, a, b, &model->foundation));
+done:
+    ruga_release(a);
+    ruga_release(b);
+    return status;
+}
+
+static ruga_status build_foundation(ruga_model* model) {
+    double nu = model->interior.poisson, modulus = model->interior.young / (1 - nu * nu);
+    model->foundation_a = foundation_a(modulus, model->wavelength);
+    model->foundation_b = foundation_b(modulus, model->wavelength);
+    if (model->variation.wavelength) {
+        return build_local_foundation(model, modulus);
+    }
+    return ruga_foundation_create(&model->mesh, &model->connectivity, model->foundation_a,
+                                  model->foundation_b, &model->foundation);
+}
+
 static ruga_status build_coupling(ruga_model* model) {
-    model->wavelength = ruga_wrinkle_wavelength(&model->skin, &model->interior);
-    model->critical_strain = ruga_wrinkle_critical_strain(&model->skin, &model->interior);
+    RUGA_TRY(ruga_variation_wavelengths(model));
     const ruga_coupling_def* c = &model->coupling;
     model->solves_skin = c->kind != RUGA_COUPLING_NONE || c->foundation;
     if (!model->solves_skin) {
         return RUGA_OK;
     }
-    double edges = model->wavelength / model->mean_edge;
-    if (edges < 3 && !model->solver.allow_coarse) {
-        return ruga_fail(RUGA_BAD_INPUT,
-                         "the mesh has %.2g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
-                         "least 3 are needed and 8 are good: remesh with edge %.3g m, or set solver.allow_coarse",
-                         edges, model->mean_edge, model->wavelength, model->wavelength / 8);
+    if (model->edges < 3 && !model->solver.allow_coarse) {
+        return ruga_fail(
+            RUGA_BAD_INPUT,
+            "the mesh has %.2g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
+            "least 3 are needed and 8 are good: remesh with edge %.3g m, or set solver.allow_coarse",
+            model->edges, model->mean_edge, model->edges_wavelength, model->edges_wavelength / 8);
     }
     if (c->kind != RUGA_COUPLING_NONE) {
         RUGA_TRY(build_clusters(model));
     }
     if (c->foundation) {
-        double nu = model->interior.poisson, k = 2 * RUGA_PI / model->wavelength;
-        double modulus = model->interior.young / (1 - nu * nu);
-        model->foundation_a = modulus * k / 4;
-        model->foundation_b = modulus / (4 * k);
-        RUGA_TRY(ruga_foundation_create(&model->mesh, &model->connectivity, model->foundation_a,
-                                        model->foundation_b, &model->foundation));
+        RUGA_TRY(build_foundation(model));
     }
     return RUGA_OK;
 }
@@ -265,6 +300,7 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
     RUGA_TRY(RUGA_NEW_ZERO(model, 1));
     RUGA_TRY_DONE(copy_def(def, model));
     RUGA_TRY_DONE(build_mesh(model));
+    RUGA_TRY_DONE(ruga_variation_create(&def->skin, model));
     RUGA_TRY_DONE(build_skin_holds(model));
     RUGA_TRY_DONE(ruga_loads_create(&model->mesh, &model->connectivity, model->handle_count, model->handles,
                                     &model->loads));
@@ -292,6 +328,7 @@ void ruga_model_destroy(ruga_model** model_pointer) {
     }
     ruga_release(model->handles);
     ruga_release(model->keyframes);
+    ruga_variation_clear(&model->variation);
     ruga_release(model->vertex_area);
     ruga_release(model->skin_handle);
     ruga_loads_destroy(&model->loads);

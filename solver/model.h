@@ -15,6 +15,15 @@
 
 enum { RUGA_MODEL_COOKIE = 0x52756761 };
 
+// A skin that varies: what belongs to single places. NULL where it is the same everywhere.
+typedef struct ruga_variation {
+    double *thickness, *young, *growth;                            // [V] m, [V] Pa, [V][2]
+    double *triangle_thickness, *triangle_young, *triangle_growth; // their means over corners
+    double* wavelength;        // [V] local eq. 3, m; NULL without an interior
+    double* scale;             // [V] wavelength over the mean one
+    double* triangle_critical; // [F] local critical strain; NULL without an interior
+} ruga_variation;
+
 struct ruga_model {
     ruga_mesh mesh;
     ruga_connectivity connectivity;
@@ -22,7 +31,8 @@ struct ruga_model {
     double mean_edge;
     double extent;    // diagonal of the bounding box, m
 
-    ruga_skin_def skin;
+    ruga_skin_def skin; // of one that varies: means over the area; its own arrays are NULL
+    ruga_variation variation;
     bool has_interior;
     ruga_interior_def interior;
     ruga_lattice_def lattice_def;
@@ -37,8 +47,12 @@ struct ruga_model {
     ruga_handle_def* handles; // with copies of names and vertex lists
     ruga_loads* loads;
 
-    double wavelength, critical_strain; // 0 without an interior
-    double foundation_a, foundation_b;  // N/m^3 and N/m; 0 without a foundation
+    // m and 1, 0 without an interior; where the skin varies the mean over the area, and the smallest.
+    double wavelength, critical_strain;
+    double wavelength_min, wavelength_max, critical_strain_max;
+    double edges;                      // per wavelength, at the worst place; 0 without an interior
+    double edges_wavelength;           // m, at that place
+    double foundation_a, foundation_b; // N/m^3 and N/m, at the mean wavelength; 0 without a foundation
 
     ruga_lattice lattice;
     ruga_rows rows;             // exact holds of the interior
@@ -49,6 +63,13 @@ struct ruga_model {
     bool any_skin_held;
     bool solves_skin; // false: x = B q
 };
+
+// Checks and copies the arrays of a skin that varies, and puts means in the place of the skin's single
+// values. An array of equal values is a single value. Then wavelengths, critical strains and edges per
+// wavelength, local and all.
+ruga_status ruga_variation_create(const ruga_skin_def* skin, ruga_model* model);
+ruga_status ruga_variation_wavelengths(ruga_model* model);
+void ruga_variation_clear(ruga_variation* variation);
 
 // The least reference force, N: 1e-8 E h times the mean edge, and never so small that the tolerance would be
 // below the round-off of the gradient.

@@ -260,7 +260,9 @@ ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** out) {
     skin->model = model;
     skin->n = 3 * model->mesh.vertex_count;
     skin->m = 3 * model->clusters.count;
-    ruga_shell_material material = {.skin = model->skin};
+    const ruga_variation* local = &model->variation;
+    ruga_shell_material material = {model->skin, local->triangle_thickness, local->triangle_young,
+                                    local->triangle_growth};
     RUGA_TRY_DONE(ruga_shell_create(&model->mesh, &model->connectivity, &material, &skin->shell));
     RUGA_TRY_DONE(transpose_clusters(&model->clusters, skin->n / 3, &t));
     RUGA_TRY_DONE(create_vectors(skin));

@@ -197,6 +197,7 @@ static int count_substeps(ruga_state* state, const double* from, const double* t
     double* before = ruga_skin_vector(state->skin, 0); // longer than the number of triangles
     double area_of_parts[MAX_SUBSTEPS + 1] = {0}, total = 0;
     strain_job job = {mesh, from, state->strain};
+    const double* local = model->variation.triangle_critical;
     if (!model->solves_skin || !model->has_interior) {
         return 1;
     }
@@ -206,14 +207,15 @@ static int count_substeps(ruga_state* state, const double* from, const double* t
     ruga_parallel_for(mesh->triangle_count, 4096, triangle_strains, &job);
     for (int f = 0; f < mesh->triangle_count; f++) {
         const int* t = mesh->triangle + 3 * (size_t)f;
-        double parts = triangle_parts(before[f], state->strain[f], model->critical_strain), normal[3];
+        double critical = local ? local[f] : model->critical_strain;
+        double parts = triangle_parts(before[f], state->strain[f], critical), normal[3];
         ruga_triangle_normal(mesh->position + 3 * (size_t)t[0], mesh->position + 3 * (size_t)t[1],
                              mesh->position + 3 * (size_t)t[2], normal);
         double area = 0.5 * ruga_norm(normal);
         area_of_parts[(int)fmin(ceil(fmax(parts, 1) - 1e-9), MAX_SUBSTEPS)] += area;
         total += area;
     }
-    double allowed = fmin(0.01 * total, 0.25 * model->wavelength * model->wavelength);
+    double allowed = fmin(0.01 * total, 0.25 * model->wavelength_min * model->wavelength_min);
     int parts = MAX_SUBSTEPS;
     for (double beyond = area_of_parts[parts]; parts > 1 && beyond <= allowed;
          beyond += area_of_parts[parts]) {

@@ -344,6 +344,38 @@ static void without_interior_there_is_no_lattice(void** state) {
     assert_ok(check_file(path, 5));
 }
 
+// Where it varies; a value that cannot be is a damaged file.
+static void a_skin_that_varies_is_written_and_read(void** state) {
+    (void)state;
+    static content c;
+    static double thickness[V], wavelength[V], growth[V][2];
+    ruga_result_reader* reader;
+    fill_content(&c);
+    for (int v = 0; v < V; v++) {
+        thickness[v] = 1e-3 * (v + 1);
+        wavelength[v] = 1e-2 * (v + 1);
+        growth[v][0] = 1 + 0.001 * v;
+        growth[v][1] = 2;
+    }
+    c.header.vertex_thickness = thickness;
+    c.header.vertex_wavelength = wavelength;
+    c.header.vertex_growth = growth[0];
+    assert_ok(write_file("skin.h5", &c.header, 2, 0));
+    assert_ok(resume_file("skin.h5", &c.header, 3, 0));
+    assert_ok(ruga_result_open("skin.h5", &reader));
+    const ruga_result_header* header = ruga_result_reader_header(reader);
+    assert_memory_equal(header->vertex_thickness, thickness, sizeof thickness);
+    assert_memory_equal(header->vertex_wavelength, wavelength, sizeof wavelength);
+    assert_memory_equal(header->vertex_growth, growth, sizeof growth);
+    assert_null(header->vertex_young);
+    ruga_result_reader_close(&reader);
+    thickness[7] = 0;
+    assert_ok(write_file("skin.h5", &c.header, 1, 0));
+    assert_status(ruga_result_open("skin.h5", &reader), RUGA_BAD_INPUT);
+    assert_non_null(strstr(ruga_last_error(), "/mesh/thickness"));
+    (void)unlink("skin.h5");
+}
+
 static void a_file_is_there_from_its_first_frame_on(void** state) {
     (void)state;
     static content c;
@@ -552,6 +584,7 @@ int main(int count, char** arguments) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_written_is_read),
         cmocka_unit_test(without_interior_there_is_no_lattice),
+        cmocka_unit_test(a_skin_that_varies_is_written_and_read),
         cmocka_unit_test(a_file_is_there_from_its_first_frame_on),
         cmocka_unit_test(resume_refuses_what_does_not_fit),
         cmocka_unit_test(temporary_files_of_dead_runs_are_removed),

@@ -38,7 +38,9 @@ RUGA_API int ruga_model_vertex_count(const ruga_model* model);
 RUGA_API const double* ruga_state_positions(const ruga_state* state);
 RUGA_API const double* ruga_state_embedded(const ruga_state* state);
 
-// Wavelength in metres of paper eq. 3, and critical strain, of the model's skin on its interior; 0 without one.
+// Wavelength in metres of paper eq. 3, and critical strain, of the model's skin on its interior; 0 without
+// one. Where the skin varies: the mean of the local wavelengths over the area, and the smallest critical
+// strain.
 RUGA_API double ruga_model_wavelength(const ruga_model* model);
 RUGA_API double ruga_model_critical_strain(const ruga_model* model);
 

@@ -115,6 +115,12 @@ typedef struct ruga_skin_def {
     double growth[2]; // rest lengths along and across the skin's first direction are multiplied by these
     ruga_skin_motion motion;
     double relaxation; // s, for damped motion
+    // A skin that varies: values at the mesh's vertices, linear between them, in place of those above; NULL =
+    // as above.
+    int vertex_count;               // of each array given: the mesh's
+    const double* vertex_thickness; // [vertex_count] m, > 0
+    const double* vertex_young;     // [vertex_count] Pa, > 0
+    const double* vertex_growth;    // [vertex_count][2], > 0
 } ruga_skin_def;
 
 typedef struct ruga_interior_def {
