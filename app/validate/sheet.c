@@ -16,6 +16,7 @@
 sheet_def sheet_default(void) {
     return (sheet_def){.ratio = 1e3,
                        .poisson = 0.3,
+                       .thickness = 1e-3,
                        .length = 12,
                        .width = 3,
                        .edges = 10,
@@ -182,7 +183,7 @@ ruga_status sheet_run(const sheet_def* def, sheet_frame* frames, double* wavelen
     ruga_model* model = NULL;
     ruga_keyframe_def keys[MAX_KEYS];
     ruga_model_def d = ruga_default_model_def();
-    *thickness = 1e-3;
+    *thickness = def->thickness;
     memset(frames, 0, (size_t)def->count * sizeof *frames);
     fill_def(def, &d, *thickness, wavelength);
     double e = 0.25 * pow(3 / def->ratio, 2.0 / 3), length = def->length * *wavelength;
@@ -217,6 +218,12 @@ ruga_status sheet_run(const sheet_def* def, sheet_frame* frames, double* wavelen
         }
         d.keyframes = keys;
         d.keyframe_count = def->count + 1;
+        if (def->plane_strain) {
+            handles[0].axes[0] = handles[0].axes[2] = false;
+            handles[0].hold = RUGA_HOLD_SKIN;
+            d.handles = handles;
+            d.handle_count = 1;
+        }
     }
     RUGA_TRY_DONE(ruga_model_create(&d, &model));
     *critical = ruga_model_critical_strain(model);

@@ -11,11 +11,13 @@
 typedef struct sheet_def {
     double ratio;                // E_x / E_q
     double poisson;              // of both
+    double thickness;            // m
     double length, width, edges; // in wavelengths, and edges per wavelength
     int64_t seed;
     bool clusters, spectral, foundation, paper_rule, paper_method, newton, minres;
     bool coupled;         // quasistatic interior, ends held; otherwise prescribed
     double depth;         // in wavelengths, coupled only
+    bool plane_strain;    // prescribed only: the skin's y is held, as in an endlessly wide sheet
     int cells;            // along the length; 0 = one per two wavelengths
     int count;            // strains
     const double* strain; // ascending, in critical strains
