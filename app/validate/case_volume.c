@@ -4,8 +4,7 @@
 // Figure 6 of the paper: the embedded shell against a volume whose skin is thin elements. Neither knows the
 // other's formulas: the shell has membrane, bending, clusters and foundation, the volume has one elasticity.
 #include "app/validate/cases.h"
-#include "app/validate/film.h"
-#include "app/validate/sheet.h"
+#include "app/validate/film_answer.h"
 
 #include "io/writer.h"
 
@@ -22,84 +21,6 @@ static const material MATERIALS[] = {
 };
 enum { MATERIALS_ALL = sizeof MATERIALS / sizeof *MATERIALS, MATERIALS_QUICK = 2 };
 
-// What one model says of one material. Amplitudes at 1.5 and 2.5 times the onset.
-typedef struct answer {
-    double wavelength, onset, amplitude[2];
-    int minima, states; // certified, of those computed
-} answer;
-
-static const double LEVEL[2] = {1.5, 2.5};
-
-// ---- the volume ----------------------------------------------------------------------------------------
-
-static ruga_status solve_volume(const film_def* def, answer* a) {
-    enum { NEAR = 6, FAR = 7 };
-    static const double near[NEAR] = {1.1, 1.2, 1.3, 1.4, 1.5, 1.6},
-                        far[FAR] = {1.1, 1.3, 1.5, 1.75, 2, 2.25, 2.5};
-    double critical;
-    film_point points[NEAR], beyond[FAR];
-    RUGA_TRY(film_onset(def, &a->wavelength, &critical));
-    for (int k = 0; k < NEAR; k++) {
-        points[k].strain = near[k] * critical;
-    }
-    RUGA_TRY(film_branch(def, 0.5 * a->wavelength, NEAR, points));
-    a->onset = film_fit(NEAR, points, 1.1 * critical, 1.6 * critical);
-    for (int k = 0; k < FAR; k++) {
-        beyond[k].strain = far[k] * a->onset;
-    }
-    RUGA_TRY(film_branch(def, 0.5 * a->wavelength, FAR, beyond));
-    a->amplitude[0] = beyond[2].amplitude;
-    a->amplitude[1] = beyond[FAR - 1].amplitude;
-    a->states = NEAR + FAR;
-    a->minima = 0;
-    for (int k = 0; k < FAR; k++) {
-        a->minima += beyond[k].outcome == RUGA_OUTCOME_MINIMUM;
-        a->minima += k < NEAR && points[k].outcome == RUGA_OUTCOME_MINIMUM;
-    }
-    return RUGA_OK;
-}
-
-// ---- the embedded shell --------------------------------------------------------------------------------
-
-// Amplitude at a strain between frames: the square is nearly linear in the strain.
-static double interpolate(int count, const sheet_frame* frame, double strain) {
-    int k = 1;
-    while (k < count - 1 && frame[k].strain < strain) {
-        k++;
-    }
-    double a = frame[k - 1].amplitude * frame[k - 1].amplitude, b = frame[k].amplitude * frame[k].amplitude;
-    double t = (strain - frame[k - 1].strain) / (frame[k].strain - frame[k - 1].strain);
-    return sqrt(fmax(0, a + t * (b - a)));
-}
-
-static ruga_status solve_shell(const material* m, bool quick, answer* a) {
-    enum { COUNT = 12 };
-    static const double strain[COUNT] = {1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.8, 2, 2.2, 2.4, 2.6, 2.8};
-    sheet_def def = sheet_default();
-    sheet_frame frame[COUNT];
-    double wavelength, critical, h;
-    def.ratio = m->ratio;
-    def.poisson = m->poisson;
-    def.thickness = m->thickness;
-    def.length = quick ? 12 : 24;
-    def.width = 1;
-    def.plane_strain = true;
-    def.strain = strain;
-    def.count = COUNT;
-    RUGA_TRY(sheet_run(&def, frame, &wavelength, &critical, &h));
-    a->onset = critical * sheet_onset(COUNT, frame, critical, false, 0);
-    a->wavelength = frame[7].wavelength_fft;
-    a->states = COUNT;
-    a->minima = 0;
-    for (int k = 0; k < COUNT; k++) {
-        a->minima += frame[k].report.outcome == RUGA_OUTCOME_MINIMUM;
-    }
-    for (int i = 0; i < 2; i++) {
-        a->amplitude[i] = interpolate(COUNT, frame, LEVEL[i] * a->onset);
-    }
-    return RUGA_OK;
-}
-
 // ---- the case ------------------------------------------------------------------------------------------
 
 static film_def film_of(const material* m) {
@@ -112,16 +33,17 @@ static film_def film_of(const material* m) {
 
 static ruga_status compare(ruga_validation* v, const material* m, FILE* table) {
     film_def def = film_of(m);
-    answer volume, shell;
+    film_answer volume, shell;
+    double critical;
     char name[128], point[64];
-    RUGA_TRY(solve_volume(&def, &volume));
-    RUGA_TRY(solve_shell(m, ruga_validation_is_quick(v), &shell));
+    RUGA_TRY(film_answer_volume(&def, &critical, &volume));
+    RUGA_TRY(film_answer_shell(&def, ruga_validation_is_quick(v) ? 12 : 24, &shell));
     (void)snprintf(point, sizeof point, "E_x/E_q %g, nu %g, h %g mm", m->ratio, m->poisson,
                    1e3 * m->thickness);
     (void)snprintf(name, sizeof name, "%s: wavelength, m", point);
     ruga_validation_near(v, name, shell.wavelength, volume.wavelength, 0.08, "dense volume");
-    for (int i = 0; i < 2; i++) {
-        (void)snprintf(name, sizeof name, "%s: amplitude at %g own onsets, m", point, LEVEL[i]);
+    for (int i = 0; i < FILM_LEVELS; i++) {
+        (void)snprintf(name, sizeof name, "%s: amplitude at %g own onsets, m", point, FILM_LEVEL[i]);
         ruga_validation_near(v, name, shell.amplitude[i], volume.amplitude[i], 0.10, "dense volume");
     }
     (void)snprintf(name, sizeof name, "%s: onset strain", point);

@@ -7,5 +7,6 @@
 const ruga_validation_case* const ruga_validation_cases[] = {
     &ruga_validate_sheet,
     &ruga_validate_volume,
+    &ruga_validate_calculix,
     NULL,
 };

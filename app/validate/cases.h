@@ -9,5 +9,6 @@
 
 extern const ruga_validation_case ruga_validate_sheet;
 extern const ruga_validation_case ruga_validate_volume;
+extern const ruga_validation_case ruga_validate_calculix;
 
 #endif
