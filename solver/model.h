@@ -11,6 +11,7 @@
 #include "lattice/lattice.h"
 #include "mesh/connectivity.h"
 #include "mesh/mesh.h"
+#include "solver/dense.h"
 #include "ruga/ruga.h"
 
 enum { RUGA_MODEL_COOKIE = 0x52756761 };
@@ -47,7 +48,8 @@ struct ruga_model {
     double* vertex_area;        // [V] m^2, rest
     int* skin_handle;           // [V][3] the handle that holds this component of the skin; -1 = free
     bool any_skin_held;
-    bool solves_skin; // false: x = B q
+    bool solves_skin; // false: x = B q, or the dense volume's
+    ruga_dense dense; // skin.model: volume; no nodes otherwise
 };
 
 // The least reference force, N: 1e-8 E h times the mean edge, and never so small that the tolerance would be

@@ -10,6 +10,7 @@
 #include "solver/volume.h"
 
 #include "core/memory.h"
+#include "core/progress.h"
 #include "core/random.h"
 #include "solver/linear.h"
 
@@ -308,6 +309,7 @@ ruga_status ruga_volume_solve(ruga_volume_solver* s, double tolerance, double* u
     *r = (ruga_volume_report){.outcome = RUGA_OUTCOME_NOT_CONVERGED};
     for (bool moved = true; moved && r->iterations < MAX_ITERATIONS; r->iterations++) {
         double shift;
+        RUGA_TRY(ruga_progress("static solve", 0));
         RUGA_TRY(evaluate(s, u, true, s->gradient, &r->energy, &r->residual));
         RUGA_TRY(factor(s, &shift));
         r->factorizations = s->factorizations - before;

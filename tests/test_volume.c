@@ -8,8 +8,9 @@
 #include "core/vec3.h"
 #include "lattice/kirchhoff.h"
 #include "lattice/volume.h"
+#include "mesh/make.h"
 #include "ruga/ruga.h"
-#include "solver/volume.h"
+#include "solver/state.h"
 #include "tests/deformations.h"
 
 #include <stdlib.h>
@@ -360,6 +361,129 @@ static void a_material_that_is_none_is_refused(void** state) {
     assert_status(ruga_volume_create(&def, &v), RUGA_BAD_INPUT);
 }
 
+// ---- as the skin of a scene ----------------------------------------------------------------------------
+
+// A strip of two waves: 4 % compression of a film whose critical strain is 2.7 %.
+typedef struct strip {
+    ruga_mesh mesh;
+    ruga_keyframe_def keys[2];
+    ruga_model_def def;
+} strip;
+
+static void make_strip(strip* s) {
+    *s = (strip){.def = ruga_default_model_def()};
+    ruga_make_def make = {.shape = RUGA_SHAPE_SHEET, .size = {0.04, 0.002, 0}, .edge = 2e-3};
+    assert_ok(ruga_mesh_make(&make, &s->mesh));
+    s->def.mesh = ruga_mesh_as_def(&s->mesh);
+    s->def.skin.model = RUGA_SKIN_VOLUME;
+    s->def.skin.thickness = 1e-3;
+    s->def.skin.young = 1e7;
+    s->def.interior.young = 1e5;
+    s->def.interior.motion = RUGA_INTERIOR_PRESCRIBED;
+    s->def.lattice.fill = RUGA_FILL_BOX;
+    s->def.lattice.cells = 16;
+    s->def.lattice.depth = 0.02;
+    s->def.frames = 3;
+    s->keys[0] = s->keys[1] = ruga_default_keyframe_def();
+    s->keys[1].time = 3 * s->def.step;
+    s->keys[1].matrix[0] = 0.96;
+    s->def.keyframes = s->keys;
+    s->def.keyframe_count = 2;
+}
+
+static void run_strip(const ruga_model* model, ruga_state* state, int frames, ruga_report* report) {
+    for (int k = 0; k < frames; k++) {
+        assert_ok(ruga_state_step(model, state, report));
+        assert_int_equal(report->outcome, RUGA_OUTCOME_MINIMUM);
+    }
+}
+
+static double rms_height(const ruga_model* model, const double* x) {
+    double mean = 0, square = 0;
+    int n = model->mesh.vertex_count;
+    for (int v = 0; v < n; v++) {
+        mean += x[3 * v + 2] / n;
+    }
+    for (int v = 0; v < n; v++) {
+        square += (x[3 * v + 2] - mean) * (x[3 * v + 2] - mean) / n;
+    }
+    return sqrt(square);
+}
+
+static void a_scenes_volume_wrinkles_past_the_critical_strain_and_resumes_to_the_bit(void** state) {
+    (void)state;
+    strip s;
+    ruga_model* model;
+    ruga_state *one, *two;
+    ruga_report report;
+    make_strip(&s);
+    assert_ok(ruga_model_create(&s.def, &model));
+    size_t n = 3 * (size_t)model->mesh.vertex_count;
+    assert_ok(ruga_state_create(model, &one));
+    assert_near(rms_height(model, ruga_state_positions(one)), 0, 1e-15);
+    run_strip(model, one, 1, &report);
+    assert_near(rms_height(model, ruga_state_positions(one)), 0, 1e-7);
+    double *restart = NULL, x = ruga_state_positions(one)[0];
+    assert_near(x, -0.5 * 0.04 * (1 - 0.04 / 3), 1e-12); // the side follows the keyframes
+    assert_ok(RUGA_NEW(restart, ruga_state_restart_size(model)));
+    ruga_state_save(one, restart);
+    run_strip(model, one, 2, &report);
+    assert_true(report.energy_interior > 0);
+    assert_near(rms_height(model, ruga_state_positions(one)), 0.5e-3, 0.15e-3);
+    ruga_set_threads(2);
+    assert_ok(ruga_state_create(model, &two));
+    assert_ok(ruga_state_load(two, restart));
+    run_strip(model, two, 2, &report);
+    ruga_set_threads(0);
+    assert_memory_equal(ruga_state_positions(one), ruga_state_positions(two), n * sizeof(double));
+    ruga_release(restart);
+    ruga_state_destroy(&one);
+    ruga_state_destroy(&two);
+    ruga_model_destroy(&model);
+    ruga_mesh_clear(&s.mesh);
+}
+
+static void a_scene_that_no_volume_can_follow_is_refused(void** state) {
+    (void)state;
+    ruga_handle_def handle = ruga_default_handle_def();
+    for (int fault = 0; fault < 8; fault++) {
+        strip s;
+        ruga_model* model = NULL;
+        make_strip(&s);
+        switch (fault) {
+        case 0:
+            s.def.interior.motion = RUGA_INTERIOR_QUASISTATIC;
+            break;
+        case 1:
+            s.def.lattice.fill = RUGA_FILL_MESH;
+            break;
+        case 2:
+            s.keys[1].matrix[1] = 0.1;
+            break;
+        case 3:
+            s.def.gravity[2] = -9.81;
+            break;
+        case 4:
+            s.def.handles = &handle, s.def.handle_count = 1;
+            break;
+        case 5:
+            s.def.skin.growth[0] = 1.1;
+            break;
+        case 6:
+            s.mesh.position[2] += 1e-4;
+            break;
+        default:
+            s.def.lattice.cells = 6;
+            break; // too coarse
+        }
+        ruga_status status = ruga_model_create(&s.def, &model);
+        assert_int_equal(status, fault == 6 ? RUGA_BAD_MESH : RUGA_BAD_INPUT);
+        assert_null(model);
+        assert_non_null(strstr(ruga_last_error(), fault == 7 ? "lattice.cells" : "skin.model: volume"));
+        ruga_mesh_clear(&s.mesh);
+    }
+}
+
 static void* allocate_while_allowed(size_t size, void* context) {
     int* allowed = context;
     return (*allowed)-- > 0 ? aligned_alloc(64, (size + 63) / 64 * 64) : NULL;
@@ -407,6 +531,8 @@ int main(void) {
         cmocka_unit_test(the_flat_state_is_left_past_the_critical_strain_only),
         cmocka_unit_test(threads_do_not_change_a_bit),
         cmocka_unit_test(a_material_that_is_none_is_refused),
+        cmocka_unit_test(a_scenes_volume_wrinkles_past_the_critical_strain_and_resumes_to_the_bit),
+        cmocka_unit_test(a_scene_that_no_volume_can_follow_is_refused),
         cmocka_unit_test(any_failed_allocation_is_a_status_and_leaks_nothing),
     };
     return cmocka_run_group_tests_name("volume", tests, NULL, check_no_leak);

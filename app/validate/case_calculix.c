@@ -10,13 +10,17 @@
 #include "core/progress.h"
 #include "io/writer.h"
 
+#include <math.h>
 #include <stdio.h>
 
+// `points` of the branch are computed.
 typedef struct material {
     double ratio, poisson;
+    int points;
 } material;
 
-static const material MATERIALS[] = {{1e2, 0.3}, {1e3, 0.3}, {1e4, 0.3}, {1e2, 0.48}, {1e3, 0.48}, {30, 0.3}};
+static const material MATERIALS[] = {{1e2, 0.3, 8},  {1e3, 0.3, 8},  {1e4, 0.3, 8},
+                                     {1e2, 0.48, 8}, {1e3, 0.48, 8}, {30, 0.3, 6}};
 enum { MATERIALS_COUNT = sizeof MATERIALS / sizeof *MATERIALS, POINTS = 8 };
 
 // In critical strains of our volume. CalculiX begins past the onset and goes back to it first.
@@ -24,30 +28,31 @@ static const double OURS[POINTS] = {1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 2, 2.5};
 static const int ORDER[POINTS] = {4, 3, 2, 1, 0, 5, 6, 7};
 
 typedef struct peers {
+    int points;
     double wavelength[2], critical[2], onset[2], seconds[2]; // ours, theirs
     film_point point[2][POINTS];
 } peers;
 
 static ruga_status solve_both(calculix* c, const film_def* def, peers* p) {
-    film_point theirs[POINTS];
+    film_point theirs[POINTS] = {{0}};
     double begin = ruga_clock(), before = c->seconds;
     RUGA_TRY(film_onset(def, &p->wavelength[0], &p->critical[0]));
-    for (int k = 0; k < POINTS; k++) {
+    for (int k = 0; k < p->points; k++) {
         p->point[0][k].strain = OURS[k] * p->critical[0];
     }
-    RUGA_TRY(film_branch(def, 0.5 * p->wavelength[0], POINTS, p->point[0]));
+    RUGA_TRY(film_branch(def, 0.5 * p->wavelength[0], p->points, p->point[0]));
     p->seconds[0] = ruga_clock() - begin;
     RUGA_TRY(calculix_onset(c, def, &p->wavelength[1], &p->critical[1]));
-    for (int k = 0; k < POINTS; k++) {
+    for (int k = 0; k < p->points; k++) {
         theirs[k].strain = OURS[ORDER[k]] * p->critical[0];
     }
-    RUGA_TRY(calculix_branch(c, def, 0.5 * p->wavelength[0], POINTS, theirs));
-    for (int k = 0; k < POINTS; k++) {
+    RUGA_TRY(calculix_branch(c, def, 0.5 * p->wavelength[0], p->points, theirs));
+    for (int k = 0; k < p->points; k++) {
         p->point[1][ORDER[k]] = theirs[k];
     }
     p->seconds[1] = c->seconds - before;
     for (int i = 0; i < 2; i++) {
-        p->onset[i] = film_fit(POINTS, p->point[i], 1.1 * p->critical[0], 1.6 * p->critical[0]);
+        p->onset[i] = film_fit(p->points, p->point[i], 1.1 * p->critical[0], 1.6 * p->critical[0]);
     }
     return RUGA_OK;
 }
@@ -61,7 +66,7 @@ static void state_peers(ruga_validation* v, const char* point, const peers* p) {
     ruga_validation_near(v, name, p->critical[0], p->critical[1], 0.03, "ccx, *BUCKLE");
     (void)snprintf(name, sizeof name, "%s: onset strain", point);
     ruga_validation_near(v, name, p->onset[0], p->onset[1], 0.03, "ccx, NLGEOM");
-    for (int k = 0; k < POINTS; k++) {
+    for (int k = 0; k < p->points; k++) {
         minima += p->point[0][k].outcome == RUGA_OUTCOME_MINIMUM;
         if (k == 4 || k > 5) {
             (void)snprintf(name, sizeof name, "%s: amplitude at %g critical strains, m", point, OURS[k]);
@@ -70,7 +75,7 @@ static void state_peers(ruga_validation* v, const char* point, const peers* p) {
         }
     }
     (void)snprintf(name, sizeof name, "%s: our states in a certified minimum", point);
-    ruga_validation_near(v, name, minima, POINTS, 0, "all of them");
+    ruga_validation_near(v, name, minima, p->points, 0, "all of them");
     (void)snprintf(name, sizeof name, "%s: time, s", point);
     ruga_validation_record(v, name, p->seconds[0], p->seconds[1], "ccx");
 }
@@ -85,7 +90,8 @@ static void state_other(ruga_validation* v, const char* point, const char* model
     for (int i = 0; i < FILM_LEVELS; i++) {
         (void)snprintf(name, sizeof name, "%s, %s: amplitude at %g own onsets, m", point, model,
                        FILM_LEVEL[i]);
-        ruga_validation_record(v, name, a->amplitude[i], p->point[1][i ? 7 : 4].amplitude,
+        int k = i ? 7 : 4;
+        ruga_validation_record(v, name, a->amplitude[i], k < p->points ? p->point[1][k].amplitude : NAN,
                                "ccx at that multiple of the critical strain");
     }
     (void)snprintf(name, sizeof name, "%s, %s: time, s", point, model);
@@ -93,7 +99,7 @@ static void state_other(ruga_validation* v, const char* point, const char* model
 }
 
 static void write_curves(FILE* table, const film_def* def, const peers* p) {
-    for (int k = 0; k < POINTS; k++) {
+    for (int k = 0; k < p->points; k++) {
         (void)fprintf(table, "%g,%g,%.9g,%.9g,%.9g\n", def->ratio, def->poisson, p->point[0][k].strain,
                       p->point[0][k].amplitude, p->point[1][k].amplitude);
     }
@@ -103,7 +109,7 @@ static ruga_status compare(ruga_validation* v, calculix* c, const material* m, F
     film_def def = film_default();
     char point[64];
     double critical;
-    peers p = {0};
+    peers p = {.points = m->points};
     film_answer volume, shell;
     def.ratio = m->ratio;
     def.poisson = m->poisson;
@@ -140,6 +146,10 @@ static ruga_status run(ruga_validation* v) {
         v, "Judged is our volume with the material law that CalculiX has, St. Venant-Kirchhoff. Ruga's "
            "own law, fixed corotational, differs from it by terms of the order of the strain itself: "
            "that is the difference between our two volumes, and it vanishes with the critical strain.");
+    ruga_validation_note(
+        v, "At E_x/E_q = 30 the branch ends at 1.6 critical strains. Beyond 10 %% of compression a St. "
+           "Venant-Kirchhoff bed is about to fail in itself: CalculiX gives up (too many cutbacks) before "
+           "2.5 critical strains, and our volume leaves the branch by 2. Ruga's own law goes on.");
     return RUGA_OK;
 }
 

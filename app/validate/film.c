@@ -123,6 +123,7 @@ static ruga_status bisect(cell* c, double* strain) {
     double low = 0, high = 2 * film_strain(c->def);
     while (high - low > 1e-7 * high) {
         bool stable;
+        RUGA_TRY(ruga_progress("critical strain", 0));
         double middle = 0.5 * (low + high);
         flatten(c, middle, c->u);
         RUGA_TRY(ruga_volume_is_stable(c->solver, c->u, &stable, NULL));
