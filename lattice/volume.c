@@ -153,7 +153,7 @@ typedef struct axis_table {
 } axis_table;
 
 static axis_table tabulate(const ruga_spline* s, int cell) {
-    axis_table t;
+    axis_table t = {0};
     double place[3], a = s->grid[cell], b = s->grid[cell + 1];
     t.points = gauss(s->degree, place, t.weight);
     for (int g = 0; g < t.points; g++) {
@@ -239,7 +239,7 @@ static void evaluate_elements(int begin, int end, int chunk, void* context) {
         axis_table table[3] = {tabulate(&v->axis[0], element % v->axis[0].cells),
                                tabulate(&v->axis[1], element / v->axis[0].cells % v->axis[1].cells),
                                tabulate(&v->axis[2], layer)};
-        double u[NODES_MAX][3], grad[NODES_MAX][3];
+        double u[NODES_MAX][3] = {{0}}, grad[NODES_MAX][3] = {{0}};
         double* blocks = e->blocks ? &e->blocks[(size_t)i * (size_t)pairs * 9] : NULL;
         for (int a = 0; a < n; a++) {
             memcpy(u[a], &e->u[3 * v->element_node[element * n + a]], sizeof u[a]);
@@ -368,8 +368,9 @@ void ruga_volume_grade(double depth, double first, int below, double thickness, 
     }
     double height = first;
     grid[below] = 0;
-    for (int k = below - 1; k >= 0; k--, height *= high) {
+    for (int k = below - 1; k >= 0; k--) {
         grid[k] = grid[k + 1] - height;
+        height *= high;
     }
     grid[0] = -depth;
     for (int k = 1; k <= skin; k++) {

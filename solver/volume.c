@@ -187,9 +187,9 @@ static ruga_status factor(ruga_volume_solver* s, double* shift) {
     take_matrix(s);
     *shift = 0;
     RUGA_TRY(factor_shifted(s, 0, &definite));
-    for (double next = SHIFT_START; !definite && next < SHIFT_MAX; next *= 4) {
-        *shift = next;
-        RUGA_TRY(factor_shifted(s, next, &definite));
+    while (!definite && *shift < SHIFT_MAX) {
+        *shift = fmax(SHIFT_START, 4 * *shift);
+        RUGA_TRY(factor_shifted(s, *shift, &definite));
     }
     return definite ? RUGA_OK
                     : ruga_fail(RUGA_LIBRARY, "volume: no shift of its stiffness makes it positive definite");

@@ -110,6 +110,16 @@ static ruga_status run(ruga_validation* v) {
            "carries no shear at the interface. Theory then expects a bonded film 6 to 8 %% later at "
            "nu = 0.3 and none of it at nu = 0.5; what the volume adds at small E_x/E_q is the large "
            "compression of the bed itself.");
+    if (!quick) {
+        ruga_validation_note(
+            v, "At E_x/E_q = 30 the film wrinkles at 5 to 6 %% of strain and the bed is compressed by up to "
+               "15 %%. That is no longer small: in the volume alone, changing the bed's law from fixed "
+               "corotational to St. Venant-Kirchhoff moves the wavelength there from 1.03 to 0.96 of eq. "
+               "3. An amplitude follows wavelength and onset, (lambda/pi) sqrt(eps - eps_c), and the "
+               "volume's wavelength (nu = 0.48) or onset (nu = 0.3) is larger than that of small strain, "
+               "on which eq. 3 and the shell's foundation rest. The cure would be a foundation made from "
+               "the incremental moduli of the compressed bed.");
+    }
     return RUGA_OK;
 }
 
