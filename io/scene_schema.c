@@ -83,7 +83,10 @@ const ruga_key ruga_keys[] = {
            "Length of an edge of the new mesh."),
 
     SECTION("skin", "{}", "The thin shell."),
-    CHOICE("skin.model", -1, "shell", "shell|!springs|!volume", "What the skin is made of."),
+    CHOICE("skin.model", MODEL(skin.model), "shell", "shell|!springs|volume",
+           "shell: a thin shell. volume: thin stiff elements of a volume that is fine throughout, `lattice.cells` "
+           "along its longest side and graded in depth; a flat rectangular sheet in a plane of z with `fill: box` and "
+           "prescribed stretches only. `coupling` says nothing then."),
     NUMBER("skin.thickness", MODEL(skin.thickness), "m", "2 mm", POSITIVE, "Thickness h."),
     NUMBER("skin.young", MODEL(skin.young), "Pa", "40 MPa", POSITIVE, "Young's modulus."),
     NUMBER("skin.poisson", MODEL(skin.poisson), "1", "0.3", POISSON, "Poisson's ratio."),
@@ -146,7 +149,8 @@ const ruga_key ruga_keys[] = {
         "mesh: what the closed surface encloses is material. box: the whole box of cells is; an open sheet "
         "lies on its top face, at the side of its normals."),
     NUMBER("lattice.depth", MODEL(lattice.depth), "m", "0 m", NOT_NEGATIVE,
-           "Depth of the box below an open sheet with `fill: box`; 0 = one cell."),
+           "Depth of the box below an open sheet with `fill: box`; 0 = one cell, or two wavelengths with "
+           "`skin.model: volume`."),
 
     SECTION("coupling", "{}", "What ties skin and interior together."),
     CHOICE(

@@ -249,7 +249,8 @@ static ruga_status build_foundation(ruga_model* model) {
 static ruga_status build_coupling(ruga_model* model) {
     RUGA_TRY(ruga_variation_wavelengths(model));
     const ruga_coupling_def* c = &model->coupling;
-    model->solves_skin = c->kind != RUGA_COUPLING_NONE || c->foundation;
+    model->solves_skin =
+        model->skin.model != RUGA_SKIN_VOLUME && (c->kind != RUGA_COUPLING_NONE || c->foundation);
     if (!model->solves_skin) {
         return RUGA_OK;
     }
@@ -279,6 +280,23 @@ static ruga_status build_interior(ruga_model* model) {
     return build_coupling(model);
 }
 
+static ruga_status build_dense(ruga_model* model, double depth) {
+    ruga_dense_def def = {.skin = &model->skin,
+                          .interior = &model->interior,
+                          .cells = model->lattice_def.cells,
+                          .degree = model->lattice_def.degree,
+                          .depth = depth > 0 ? depth : 2 * model->wavelength};
+    double cells = model->wavelength / (ruga_dense_side(&model->mesh) / def.cells);
+    if (cells < 4 && !model->solver.allow_coarse) {
+        return ruga_fail(RUGA_BAD_INPUT,
+                         "the volume has %.2g cells per wrinkle wavelength (%.4g m), at least 4 are needed and 16 are "
+                         "good: give more lattice.cells, or set solver.allow_coarse",
+                         cells, model->wavelength);
+    }
+    RUGA_TRY(ruga_progress("building the volume", 0));
+    return ruga_dense_create(&model->mesh, &def, &model->dense);
+}
+
 double ruga_model_force_floor(const ruga_model* model) {
     // A strain's round-off is that of positions over edges, so a nodal force has that of E h times the extent.
     double stiffness = model->skin.young * model->skin.thickness;
@@ -297,8 +315,12 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
     *out = NULL;
     RUGA_TRY(check_material(def));
     RUGA_TRY(check_numbers(def));
+    RUGA_TRY(ruga_dense_check(def));
     RUGA_TRY(RUGA_NEW_ZERO(model, 1));
     RUGA_TRY_DONE(copy_def(def, model));
+    if (model->skin.model == RUGA_SKIN_VOLUME) {
+        model->lattice_def.depth = 0; // the lattice only carries the surface along: one layer will do
+    }
     RUGA_TRY_DONE(build_mesh(model));
     RUGA_TRY_DONE(ruga_variation_create(&def->skin, model));
     RUGA_TRY_DONE(build_skin_holds(model));
@@ -306,6 +328,9 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
                                     &model->loads));
     if (model->has_interior) {
         RUGA_TRY_DONE(build_interior(model));
+        if (model->skin.model == RUGA_SKIN_VOLUME) {
+            RUGA_TRY_DONE(build_dense(model, def->lattice.depth));
+        }
     } else {
         model->solves_skin = true;
     }
@@ -335,6 +360,7 @@ void ruga_model_destroy(ruga_model** model_pointer) {
     ruga_foundation_clear(&model->foundation);
     ruga_clusters_clear(&model->clusters);
     ruga_rows_clear(&model->rows);
+    ruga_dense_clear(&model->dense);
     ruga_lattice_clear(&model->lattice);
     ruga_connectivity_clear(&model->connectivity);
     ruga_mesh_clear(&model->mesh);

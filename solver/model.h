@@ -11,6 +11,7 @@
 #include "lattice/lattice.h"
 #include "mesh/connectivity.h"
 #include "mesh/mesh.h"
+#include "solver/dense.h"
 #include "ruga/ruga.h"
 
 enum { RUGA_MODEL_COOKIE = 0x52756761 };
@@ -61,7 +62,8 @@ struct ruga_model {
     double* vertex_area;        // [V] m^2, rest
     int* skin_handle;           // [V][3] the handle that holds this component of the skin; -1 = free
     bool any_skin_held;
-    bool solves_skin; // false: x = B q
+    bool solves_skin; // false: x = B q, or the dense volume's
+    ruga_dense dense; // skin.model: volume; no nodes otherwise
 };
 
 // Checks and copies the arrays of a skin that varies, and puts means in the place of the skin's single

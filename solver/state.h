@@ -18,6 +18,9 @@ struct ruga_state {
     double* v;        // [N][3] their velocities
     ruga_skin* skin;
     ruga_interior* interior;                        // NULL where prescribed or absent
+    ruga_volume_solver* volume; // of the dense volume; NULL for a shell
+    double* deviation;          // [N of the volume][3] m: displacement less that of the prescribed stretch
+    double* displacement;       // [N of the volume][3] work
     double *old_q, *old_x, *next_embedded, *anchor; // work
     double* strain;                                 // [F] work: compressive strain of the embedded surface
     ruga_report start;                              // of frame 0

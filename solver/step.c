@@ -22,6 +22,8 @@ enum { MAX_SUBSTEPS = 1000 };
 static ruga_status create_vectors(ruga_state* state) {
     const ruga_model* model = state->model;
     size_t n = 3 * (size_t)model->mesh.vertex_count, nodes = 3 * (size_t)model->lattice.node_count;
+    RUGA_TRY(RUGA_NEW_ZERO(state->deviation, 3 * (size_t)model->dense.volume.node_count));
+    RUGA_TRY(RUGA_NEW_ZERO(state->displacement, 3 * (size_t)model->dense.volume.node_count));
     RUGA_TRY(RUGA_NEW_ZERO(state->x, n));
     RUGA_TRY(RUGA_NEW_ZERO(state->embedded, n));
     RUGA_TRY(RUGA_NEW_ZERO(state->next_embedded, n));
@@ -60,6 +62,11 @@ static ruga_status create_state(const ruga_model* model, ruga_state** out) {
         RUGA_TRY_DONE(ruga_progress("analysing the interior", 0));
         RUGA_TRY_DONE(ruga_interior_create(model, state->skin, &state->interior));
     }
+    if (model->dense.volume.node_count > 0) {
+        RUGA_TRY_DONE(ruga_progress("analysing the volume", 0));
+        RUGA_TRY_DONE(ruga_volume_solver_create(&model->dense.volume, model->dense.held, model->solver.seed,
+                                                &state->volume));
+    }
     set_start(state);
 done:
     if (status != RUGA_OK) {
@@ -76,8 +83,10 @@ void ruga_state_destroy(ruga_state** state_pointer) {
     }
     ruga_interior_destroy(&state->interior);
     ruga_skin_destroy(&state->skin);
+    ruga_volume_solver_destroy(&state->volume);
     void* const owned[] = {state->x,     state->embedded,      state->q,      state->v,     state->old_q,
-                           state->old_x, state->next_embedded, state->anchor, state->strain};
+                           state->old_x, state->next_embedded, state->anchor, state->strain,
+                           state->deviation, state->displacement};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
         ruga_release(owned[i]);
     }
@@ -110,7 +119,8 @@ const double* ruga_state_lattice(const ruga_state* state) {
 enum { RESTART_SCALARS = 5 }; // frame, time, shift memory, proximal factor, whether a kept factor exists
 
 int ruga_state_restart_size(const ruga_model* model) {
-    return RESTART_SCALARS + 3 * model->mesh.vertex_count + 6 * model->lattice.node_count;
+    return RESTART_SCALARS + 3 * model->mesh.vertex_count + 6 * model->lattice.node_count +
+           3 * model->dense.volume.node_count;
 }
 
 void ruga_state_save(const ruga_state* state, double* restart) {
@@ -124,6 +134,8 @@ void ruga_state_save(const ruga_state* state, double* restart) {
     memcpy(restart, state->x, n * sizeof *restart);
     memcpy(restart + n, state->q, nodes * sizeof *restart);
     memcpy(restart + n + nodes, state->v, nodes * sizeof *restart);
+    memcpy(restart + n + 2 * nodes, state->deviation,
+           3 * (size_t)state->model->dense.volume.node_count * sizeof *restart);
 }
 
 ruga_status ruga_state_load(ruga_state* state, const double* restart) {
@@ -138,6 +150,8 @@ ruga_status ruga_state_load(ruga_state* state, const double* restart) {
     memcpy(state->x, restart, n * sizeof *restart);
     memcpy(state->q, restart + n, nodes * sizeof *restart);
     memcpy(state->v, restart + n + nodes, nodes * sizeof *restart);
+    memcpy(state->deviation, restart + n + 2 * nodes,
+           3 * (size_t)model->dense.volume.node_count * sizeof *restart);
     if (model->has_interior) {
         ruga_lattice_embed(&model->lattice, state->q, state->embedded);
     }
@@ -198,7 +212,7 @@ static int count_substeps(ruga_state* state, const double* from, const double* t
     double area_of_parts[MAX_SUBSTEPS + 1] = {0}, total = 0;
     strain_job job = {mesh, from, state->strain};
     const double* local = model->variation.triangle_critical;
-    if (!model->solves_skin || !model->has_interior) {
+    if ((!model->solves_skin && !state->volume) || !model->has_interior) {
         return 1;
     }
     ruga_parallel_for(mesh->triangle_count, 4096, triangle_strains, &job);
@@ -274,7 +288,32 @@ static void set_damping(ruga_state* state, double dt) {
     state->skin->proximal = damped ? ruga_skin_shift_unit(model) * model->skin.relaxation / dt : 0;
 }
 
+// The lattice's map is a stretch along the axes: that of its first and last node.
+static ruga_status solve_volume(ruga_state* state, ruga_report* report) {
+    const ruga_model* model = state->model;
+    const double *X = model->lattice.rest, *Y = &X[3 * (model->lattice.node_count - 1)];
+    const double *a = state->q, *b = &a[3 * (model->lattice.node_count - 1)];
+    double stretch[3], shift[3];
+    ruga_volume_report result;
+    for (int i = 0; i < 3; i++) {
+        stretch[i] = (b[i] - a[i]) / (Y[i] - X[i]);
+        shift[i] = a[i] - stretch[i] * X[i];
+    }
+    RUGA_TRY(ruga_dense_solve(&model->dense, state->volume, stretch, shift, model->solver.tolerance, state->deviation,
+                              state->displacement, &result));
+    ruga_dense_surface(&model->dense, &model->mesh, state->displacement, state->x);
+    state->skin->work.iterations += result.iterations;
+    state->skin->work.factorizations += result.factorizations;
+    report->outcome = result.outcome;
+    report->residual_shell = result.residual;
+    report->energy_interior = result.energy;
+    return RUGA_OK;
+}
+
 static ruga_status solve_skin_alone(ruga_state* state, ruga_report* report) {
+    if (state->volume) {
+        return solve_volume(state, report);
+    }
     ruga_skin_result result = {.outcome = RUGA_OUTCOME_MINIMUM};
     set_handle_targets(state);
     if (state->model->solves_skin) {
@@ -389,7 +428,11 @@ static ruga_status settle(ruga_state* state) {
     memcpy(state->x, state->embedded, (size_t)state->skin->n * sizeof *state->x);
     memcpy(state->anchor, state->x, (size_t)state->skin->n * sizeof *state->x);
     set_handle_targets(state);
-    RUGA_TRY(ruga_state_measure(state, report));
+    if (state->volume) {
+        RUGA_TRY(solve_skin_alone(state, report));
+    } else {
+        RUGA_TRY(ruga_state_measure(state, report));
+    }
     if (!rigid || report->residual_shell > model->solver.tolerance) {
         int parts = report->substeps = parts_to_pose(state, pose);
         for (int k = 1; k <= parts; k++) {
@@ -530,6 +573,9 @@ ruga_status ruga_state_measure(ruga_state* state, ruga_report* report) {
     ruga_skin_result result = {.outcome = state->start.outcome};
     double *gradient = ruga_skin_vector(state->skin, 0), *projected = ruga_skin_vector(state->skin, 1);
     *report = state->start;
+    if (state->volume) {
+        return RUGA_OK;
+    }
     RUGA_TRY(ruga_skin_energy(state->skin, state->x, &result.terms, gradient));
     RUGA_TRY(ruga_skin_project(state->skin, gradient, projected));
     result.residual =

@@ -7,6 +7,8 @@
 const ruga_validation_case* const ruga_validation_cases[] = {
     &ruga_validate_sheet,
     &ruga_validate_map,
+    &ruga_validate_volume,
+    &ruga_validate_calculix,
     &ruga_validate_elements,
     &ruga_validate_bar,
     &ruga_validate_zigzag,

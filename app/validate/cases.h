@@ -9,6 +9,8 @@
 
 extern const ruga_validation_case ruga_validate_sheet;
 extern const ruga_validation_case ruga_validate_map;
+extern const ruga_validation_case ruga_validate_volume;
+extern const ruga_validation_case ruga_validate_calculix;
 extern const ruga_validation_case ruga_validate_elements;
 extern const ruga_validation_case ruga_validate_bar;
 extern const ruga_validation_case ruga_validate_zigzag;

@@ -222,6 +222,12 @@ ruga_status sheet_run(const sheet_def* def, sheet_frame* frames, double* wavelen
         }
         d.keyframes = keys;
         d.keyframe_count = def->count + 1;
+        if (def->plane_strain) {
+            handles[0].axes[0] = handles[0].axes[2] = false;
+            handles[0].hold = RUGA_HOLD_SKIN;
+            d.handles = handles;
+            d.handle_count = 1;
+        }
     }
     RUGA_TRY_DONE(ruga_model_create(&d, &model));
     *critical = ruga_model_critical_strain(model);

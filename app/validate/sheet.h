@@ -17,6 +17,7 @@ typedef struct sheet_def {
     bool clusters, spectral, foundation, paper_rule, paper_method, newton, minres;
     bool coupled;         // quasistatic interior, ends held; otherwise prescribed
     double depth;         // in wavelengths, coupled only
+    bool plane_strain;    // prescribed only: the skin's y is held, as in an endlessly wide sheet
     int cells;            // along the length; 0 = one per two wavelengths
     int count;            // strains
     const double* strain; // ascending, in critical strains

@@ -106,7 +106,12 @@ typedef enum ruga_method {
 } ruga_method;
 typedef enum ruga_linear_kind { RUGA_LINEAR_DIRECT, RUGA_LINEAR_MINRES } ruga_linear_kind;
 
+// RUGA_SKIN_VOLUME: no shell, but thin stiff elements of a volume that is fine throughout, on top of a box; the
+// interior must be prescribed by stretches along the axes. RUGA_SKIN_SPRINGS is not there yet.
+typedef enum ruga_skin_model { RUGA_SKIN_SHELL, RUGA_SKIN_SPRINGS, RUGA_SKIN_VOLUME } ruga_skin_model;
+
 typedef struct ruga_skin_def {
+    ruga_skin_model model;
     double thickness; // m, > 0
     double young;     // Pa, > 0
     double poisson;   // in (-1, 0.5)
