@@ -7,6 +7,7 @@
 #include "app/validate/film_answer.h"
 
 #include "io/writer.h"
+#include "view/plot.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,7 +32,54 @@ static film_def film_of(const material* m) {
     return def;
 }
 
-static ruga_status compare(ruga_validation* v, const material* m, FILE* table) {
+// Shell over volume, of each material.
+typedef struct ratios {
+    double wavelength, amplitude[FILM_LEVELS];
+} ratios;
+
+static ruga_status draw(ruga_validation* v, int count, const ratios* r, bool amplitude) {
+    static const double poisson[] = {0.3, 0.48}, ends[] = {20, 2e4}, one[] = {1, 1};
+    double tolerance = amplitude ? 0.1 : 0.08, low[] = {1 - tolerance, 1 - tolerance};
+    double high[] = {1 + tolerance, 1 + tolerance}, x[4][MATERIALS_ALL], y[4][MATERIALS_ALL];
+    char path[RUGA_VALIDATION_PATH], names[4][64];
+    ruga_plot_series series[5] = {{.name = amplitude ? "the volume, 10 %" : "the volume, 8 %",
+                                   .count = 2,
+                                   .x = ends,
+                                   .y = one,
+                                   .low = low,
+                                   .high = high,
+                                   .style = RUGA_PLOT_LINE,
+                                   .color = 7}};
+    int used = 1;
+    for (int k = 0; k < (amplitude ? 4 : 2); k++) {
+        int points = 0;
+        for (int i = 0; i < count; i++) {
+            if (MATERIALS[i].poisson == poisson[k % 2]) {
+                x[k][points] = MATERIALS[i].ratio;
+                y[k][points++] = amplitude ? r[i].amplitude[k / 2] : r[i].wavelength;
+            }
+        }
+        (void)snprintf(names[k], sizeof names[k], amplitude ? "nu %g, at %g own onsets" : "nu %g", poisson[k % 2],
+                       FILM_LEVEL[k / 2]);
+        series[used] = (ruga_plot_series){
+            .name = names[k], .count = points, .x = x[k], .y = y[k], .style = RUGA_PLOT_MARKERS, .color = k + 1};
+        used += points > 0;
+    }
+    ruga_validation_file(v, amplitude ? "amplitude.svg" : "wavelength.svg",
+                         amplitude ? "Amplitude of the embedded shell over the dense volume's"
+                                   : "Wavelength of the embedded shell over the dense volume's",
+                         path);
+    return ruga_plot_write(
+        &(ruga_plot_def){.x = {.name = "E_x / E_q", .logarithmic = true, .min = 20, .max = 2e4},
+                         .y = {.name = amplitude ? "amplitude, shell / volume" : "wavelength, shell / volume",
+                               .min = 0.8,
+                               .max = 1.2},
+                         .series_count = used,
+                         .series = series},
+        path);
+}
+
+static ruga_status compare(ruga_validation* v, const material* m, FILE* table, ratios* r) {
     film_def def = film_of(m);
     film_answer volume, shell;
     double critical;
@@ -42,9 +90,11 @@ static ruga_status compare(ruga_validation* v, const material* m, FILE* table) {
                    1e3 * m->thickness);
     (void)snprintf(name, sizeof name, "%s: wavelength, m", point);
     ruga_validation_near(v, name, shell.wavelength, volume.wavelength, 0.08, "dense volume");
+    r->wavelength = shell.wavelength / volume.wavelength;
     for (int i = 0; i < FILM_LEVELS; i++) {
         (void)snprintf(name, sizeof name, "%s: amplitude at %g own onsets, m", point, FILM_LEVEL[i]);
         ruga_validation_near(v, name, shell.amplitude[i], volume.amplitude[i], 0.10, "dense volume");
+        r->amplitude[i] = shell.amplitude[i] / volume.amplitude[i];
     }
     (void)snprintf(name, sizeof name, "%s: onset strain", point);
     ruga_validation_record(v, name, shell.onset, volume.onset, "dense volume");
@@ -89,6 +139,8 @@ static ruga_status run(ruga_validation* v) {
     char path[RUGA_VALIDATION_PATH];
     ruga_writer writer;
     bool quick = ruga_validation_is_quick(v);
+    int count = quick ? (int)MATERIALS_QUICK : (int)MATERIALS_ALL;
+    ratios r[MATERIALS_ALL];
     ruga_validation_file(v, "points.csv", "All points: both models and theory.", path);
     RUGA_TRY(ruga_writer_open(path, &writer));
     (void)fputs(
@@ -97,10 +149,12 @@ static ruga_status run(ruga_validation* v) {
         "shell\n",
         writer.file);
     ruga_status status = RUGA_OK;
-    for (int i = 0; i < (quick ? (int)MATERIALS_QUICK : (int)MATERIALS_ALL) && status == RUGA_OK; i++) {
-        status = compare(v, &MATERIALS[i], writer.file);
+    for (int i = 0; i < count && status == RUGA_OK; i++) {
+        status = compare(v, &MATERIALS[i], writer.file, &r[i]);
     }
     RUGA_TRY(ruga_writer_close(&writer, status));
+    RUGA_TRY(draw(v, count, r, false));
+    RUGA_TRY(draw(v, count, r, true));
     if (!quick) {
         RUGA_TRY(show_convergence(v));
     }
