@@ -6,5 +6,6 @@
 
 const ruga_validation_case* const ruga_validation_cases[] = {
     &ruga_validate_sheet,
+    &ruga_validate_shell,
     NULL,
 };

@@ -8,5 +8,6 @@
 #include "app/validate/validation.h"
 
 extern const ruga_validation_case ruga_validate_sheet;
+extern const ruga_validation_case ruga_validate_shell;
 
 #endif
