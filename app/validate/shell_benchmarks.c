@@ -29,7 +29,7 @@ static void bench_clear(bench* b) {
     ruga_release(b->x);
 }
 
-static ruga_status bench_create(const shell_patch_def* patch, double thickness, double young, double poisson,
+static ruga_status bench_create(const shell_run* run, const shell_patch_def* patch, double thickness, double young, double poisson,
                                 int frames, bench* b) {
     *b = (bench){.def = ruga_default_model_def()};
     RUGA_TRY(shell_patch_create(patch, &b->patch));
@@ -39,6 +39,7 @@ static ruga_status bench_create(const shell_patch_def* patch, double thickness, 
     }
     b->def.mesh = ruga_mesh_as_def(&b->patch.mesh);
     b->def.has_interior = false;
+    b->def.skin.bending = run->bending;
     b->def.skin.thickness = thickness;
     b->def.skin.young = young;
     b->def.skin.poisson = poisson;
@@ -145,7 +146,7 @@ static ruga_status run_cantilever(const shell_run* run, double* value, int* bad)
                              .map = map_strip10};
     bench b;
     ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(bench_create(&patch, 0.1, 1.2e6, 0, 10, &b));
+    RUGA_TRY_DONE(bench_create(run, &patch, 0.1, 1.2e6, 0, 10, &b));
     (void)add_rows(&b, RUGA_HANDLE_FIX, 0, 2);
     add_rows(&b, RUGA_HANDLE_LINE_FORCE, b.patch.row_count - 1, b.patch.row_count)->force[2] = 4;
     RUGA_TRY_DONE(bench_run(&b, bad));
@@ -173,7 +174,7 @@ static ruga_status run_annulus(const shell_run* run, double* value, int* bad) {
                              .map = map_annulus};
     bench b;
     ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(bench_create(&patch, 0.03, 21e6, 0, 20, &b));
+    RUGA_TRY_DONE(bench_create(run, &patch, 0.03, 21e6, 0, 20, &b));
     (void)add_rows(&b, RUGA_HANDLE_FIX, 0, 2);
     add_rows(&b, RUGA_HANDLE_LINE_FORCE, b.patch.row_count - 1, b.patch.row_count)->force[2] = 0.8;
     RUGA_TRY_DONE(bench_run(&b, bad));
@@ -207,7 +208,7 @@ static ruga_status run_heavy(const shell_run* run, double* value, int* bad) {
     const double h = 5e-3, young = 1e9, stiffness = young * h * h * h / 12;
     bench b;
     ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(bench_create(&patch, h, young, 0, 20, &b));
+    RUGA_TRY_DONE(bench_create(run, &patch, h, young, 0, 20, &b));
     (void)add_rows(&b, RUGA_HANDLE_FIX, 0, 2);
     add_rows(&b, RUGA_HANDLE_FORCE, 0, b.patch.row_count)->force[2] = -100 * stiffness * 0.1;
     RUGA_TRY_DONE(bench_run(&b, bad));
@@ -246,7 +247,7 @@ static ruga_status buckle(const shell_run* run, bool weight, double* value, int*
     const int frames = 70;
     bench b;
     ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(bench_create(&patch, h, young, 0, frames, &b));
+    RUGA_TRY_DONE(bench_create(run, &patch, h, young, 0, frames, &b));
     (void)add_rows(&b, RUGA_HANDLE_FIX, 0, 2);
     int tip = b.patch.row_count - 1;
     double load = -0.02 * frames * critical * unit;
@@ -286,7 +287,7 @@ static ruga_status run_roll(const shell_run* run, double* value, int* bad) {
     const double h = 5e-3, young = 1e9, stiffness = young * h * h * h / 12, r = 1 / RUGA_PI;
     bench b;
     ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(bench_create(&patch, h, young, 0, 10, &b));
+    RUGA_TRY_DONE(bench_create(run, &patch, h, young, 0, 10, &b));
     (void)add_rows(&b, RUGA_HANDLE_FIX, 0, 2);
     ruga_handle_def* end = add_rows(&b, RUGA_HANDLE_MOVE, b.patch.row_count - 2, b.patch.row_count);
     end->rotate_axis[1] = -1;
@@ -321,7 +322,7 @@ static ruga_status run_roof(const shell_run* run, double* value, int* bad) {
                              .map = map_roof};
     bench b;
     ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(bench_create(&patch, 0.25, 4.32e8, 0, 1, &b));
+    RUGA_TRY_DONE(bench_create(run, &patch, 0.25, 4.32e8, 0, 1, &b));
     int middle = vertex_at(&b, &patch, 0.5, 0.5), rows = b.patch.row_count;
     fix_axes(&b, b.patch.row[0], b.patch.row[1], true, false, true);
     fix_axes(&b, b.patch.row[rows - 1], b.patch.row[rows], true, false, true);
@@ -353,7 +354,7 @@ static ruga_status run_cylinder(const shell_run* run, double* value, int* bad) {
                              .map = map_cylinder};
     bench b;
     ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(bench_create(&patch, 3, 3e6, 0.3, 1, &b));
+    RUGA_TRY_DONE(bench_create(run, &patch, 3, 3e6, 0.3, 1, &b));
     int near = vertex_at(&b, &patch, 0, 0.5), far = vertex_at(&b, &patch, 0.5, 0.5), rows = b.patch.row_count;
     fix_axes(&b, b.patch.row[0], b.patch.row[1], true, false, true);
     fix_axes(&b, b.patch.row[rows - 1], b.patch.row[rows], true, false, true);
@@ -384,7 +385,7 @@ static ruga_status run_hemisphere(const shell_run* run, double* value, int* bad)
                              .map = map_hemisphere};
     bench b;
     ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(bench_create(&patch, 0.04, 6.825e7, 0.3, 1, &b));
+    RUGA_TRY_DONE(bench_create(run, &patch, 0.04, 6.825e7, 0.3, 1, &b));
     int at[4];
     for (int i = 0; i < 4; i++) {
         at[i] = vertex_at(&b, &patch, 0.25 * i, 0);
@@ -424,15 +425,15 @@ static double row_wavelength(const bench* b, int frame, int row) {
 
 // Cerda and Mahadevan 2003: lambda = 2 sqrt(pi) (B/T)^(1/4) L^(1/2) at a strain of 5 and 10 percent.
 static ruga_status run_stretched(const shell_run* run, double* value, int* bad) {
-    const double h = 1e-4;
-    shell_patch_def patch = {.across = run->level,
-                             .along = rows_for(0.25, 0.1, run->level, 4),
+    const double h = 5e-5;
+    shell_patch_def patch = {.across = 2 * run->level,
+                             .along = rows_for(0.25, 0.1, 2 * run->level, 4),
                              .irregular = run->irregular,
                              .clamp = {true, true},
                              .map = map_stretched};
     bench b;
     ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(bench_create(&patch, h, 1e6, 0.45, 10, &b));
+    RUGA_TRY_DONE(bench_create(run, &patch, h, 1e6, 0.45, 10, &b));
     b.def.solver.method = RUGA_METHOD_DEFAULT;
     (void)add_rows(&b, RUGA_HANDLE_FIX, 0, 2);
     add_rows(&b, RUGA_HANDLE_MOVE, b.patch.row_count - 2, b.patch.row_count)->translate[0] = 0.025;

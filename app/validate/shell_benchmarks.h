@@ -10,6 +10,7 @@
 typedef struct shell_run {
     int level; // elements per side
     bool irregular;
+    ruga_bending bending;
 } shell_run;
 
 enum { SHELL_VALUES = 6 };

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double JITTER = 0.3, CLAMP_ROW = 1e-3; // in cells
+static const double JITTER = 0.3, CLAMP_ROW = 1e-2; // in cells
 
 // Vertices of row number k of the rows between v = 0 and v = 1, and their u.
 static int row_size(const shell_patch_def* def, int k) {

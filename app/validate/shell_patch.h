@@ -13,7 +13,7 @@ typedef struct shell_patch_def {
     bool irregular;     // every vertex moved by up to 0.3 cells; rims along themselves; the points with 4 u and 2 v
                         // whole stay
     bool closed;        // u = 1 is u = 0
-    bool clamp[2];      // a row of 1e-3 cells beyond v = 0, v = 1, to hold with the row before: it has next to no
+    bool clamp[2];      // a row of 1e-2 cells beyond v = 0, v = 1, to hold with the row before: it has next to no
                         // area that could bend, so that the rim turns by nothing
     void (*map)(double u, double v, double x[3]);
 } shell_patch_def;
