@@ -10,9 +10,10 @@
 // it, all at rest. The energy is that of a plate, E = A D/2 [(1 - nu) b:b + nu (tr b)^2] = a.K a / 2 with
 //     K_ij = 4 A D [(1 - nu) (g_i.g_j)^2 + nu |g_i|^2 |g_j|^2] / (|g_i| |g_j|).
 // The two triangles at an edge share the director, so that their a add up to the change t of the hinge's angle:
-//     a = t/2 + f in the one, a = t/2 - f in the other.
-// f is what the mesh's shape makes of it: averaged normals (f = 0) are wrong by tens of percent on irregular
-// meshes, however fine. Here f is where the energy is least: M f = -c(t), M constant, positive definite and, as a
+//     a = w t + f in the one, a = w' t - f in the other, w + w' = 1.
+// w is the other triangle's part of K_ii + K'_ii, which keeps f small, whatever the two weigh; f is what the mesh's
+// shape makes of it. Averaged normals (f = 0, w = 1/2) are wrong by tens of percent on irregular meshes, however fine.
+// Here f is where the energy is least: M f = -c(t), M constant, positive definite and, as a
 // mass matrix is, well conditioned, so that conjugate gradients scaled by its diagonal find it to round-off in some
 // tens of steps. (The same as the lowest-order method of Hellan, Herrmann and Johnson: hinges are what its matrix
 // becomes when it is lumped, at nu = -1/3 on equilateral triangles.) At the rim a is free by itself.
@@ -160,6 +161,7 @@ ruga_status ruga_directors_create(int vertex_count, int triangle_count, const in
                           .hinge = hinge};
     RUGA_TRY(RUGA_NEW(d->stiffness, triangle_count));
     RUGA_TRY(RUGA_NEW(d->hinge_triangle, hinge_count));
+    RUGA_TRY(RUGA_NEW(d->weight, hinge_count));
     RUGA_TRY(RUGA_NEW(d->slot, hinge_count));
     RUGA_TRY(RUGA_NEW(d->slot_vertex, hinge_count));
     RUGA_TRY(RUGA_NEW(d->rotation, hinge_count));
@@ -170,12 +172,21 @@ ruga_status ruga_directors_create(int vertex_count, int triangle_count, const in
 }
 
 ruga_status ruga_directors_link(ruga_directors* d) {
+    for (int h = 0; h < d->hinge_count; h++) {
+        double own[2];
+        for (int side = 0; side < 2; side++) {
+            int f = d->hinge_triangle[h][side], i = local_edge(d, f, h);
+            own[side] = d->stiffness[f][i][i];
+        }
+        d->weight[h][0] = own[1] / (own[0] + own[1]);
+        d->weight[h][1] = own[0] / (own[0] + own[1]);
+    }
     RUGA_TRY(set_matrix(d));
     return set_slots(d);
 }
 
 void ruga_directors_clear(ruga_directors* d) {
-    void* const owned[] = {d->stiffness,   d->hinge_triangle, d->start,    d->edge,  d->slot,
+    void* const owned[] = {d->weight,      d->stiffness,   d->hinge_triangle, d->start,    d->edge,  d->slot,
                            d->slot_vertex, d->rotation,       d->residual, d->image, d->direction,
                            d->diagonal};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
@@ -194,7 +205,8 @@ static void triangle_moments(const ruga_directors* d, int f, const double* angle
     for (int i = 0; i < 3; i++) {
         int h = d->triangle_hinge[f][i];
         if (h >= 0) {
-            a[i] = 0.5 * angle[h] + (d->hinge_triangle[h][0] == f ? rotation[h] : -rotation[h]);
+            bool first = d->hinge_triangle[h][0] == f;
+            a[i] = d->weight[h][!first] * angle[h] + (first ? rotation[h] : -rotation[h]);
         }
     }
     for (int i = 0; i < 3; i++) {
@@ -257,13 +269,13 @@ void ruga_directors_settle(ruga_directors* d, const double* angle, double* momen
         for (int i = 0; i < 3; i++) {
             int h = d->triangle_hinge[f][i];
             if (h >= 0) {
-                moment[h] += 0.5 * of[i];
+                moment[h] += d->weight[h][d->hinge_triangle[h][0] != f] * of[i];
             }
         }
     }
 }
 
-// d2E/df_e dx = sum over the edge's triangles of +-K_ej / 2 grad t_j.
+// d2E/df_e dx = sum over the edge's triangles of +-K_ej w_j grad t_j.
 void ruga_directors_coupling(const ruga_directors* d, double (*const gradient)[4][3], double (*value)[3]) {
     memset(value, 0, (size_t)d->start[d->vertex_count] * sizeof *value);
     for (int h = 0; h < d->hinge_count; h++) {
@@ -272,11 +284,11 @@ void ruga_directors_coupling(const ruga_directors* d, double (*const gradient)[4
             if (other < 0) {
                 continue;
             }
-            double half = (k < 12 ? 0.5 : -0.5) * d->stiffness[f][local_edge(d, f, h)][j];
+            double part = d->weight[other][d->hinge_triangle[other][0] != f] * d->stiffness[f][local_edge(d, f, h)][j];
             while (d->slot_vertex[h][i] != d->hinge[other][k % 4]) {
                 i++;
             }
-            ruga_add_scaled(half, gradient[other][k % 4], value[d->slot[h][i]]);
+            ruga_add_scaled(k < 12 ? part : -part, gradient[other][k % 4], value[d->slot[h][i]]);
         }
     }
 }

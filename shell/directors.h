@@ -18,6 +18,7 @@ typedef struct ruga_directors {
     const int (*triangle_hinge)[3]; // [F] of the shell
     const int (*hinge)[4];          // [H] of the shell
     int (*hinge_triangle)[2];       // [H] triangles on the side of vertex 2 and of vertex 3 of the hinge
+    double (*weight)[2];            // [H] parts of a hinge's angle that its triangles take where f = 0
     ruga_sparse matrix;             // [H][H] second derivatives by the rotations: constant, positive definite
     // Second derivatives by rotation and position, blocks of 3: those of vertex v are at start[v] .. start[v + 1].
     int* start;  // [V + 1]

@@ -14,7 +14,7 @@
 // same for any number of threads.
 //
 // With directors (directors.c) a hinge's moment is not its stiffness times its angle but comes from all of them. The
-// part grad t K grad t^T / 4 couples the three hinges of a triangle, and so its corners with those of its neighbours:
+// part w grad t K (w grad t)^T couples the three hinges of a triangle, and so its corners with those of its neighbours:
 // this patch of up to six vertices is one more element.
 #include "shell/shell.h"
 
@@ -69,7 +69,7 @@ struct ruga_shell {
     double (*hinge_gradient)[4][3];                    // [H] of the angle
     double* hinge_moment;                              // [H] k (theta - theta0)
     double* hinge_angle;                               // [H] with directors: theta - theta0
-    double (*patch_gradient)[3][PATCH][3];             // [F] with directors: of the angles of its hinges
+    double (*patch_gradient)[3][PATCH][3];             // [F] with directors: of w t
     double (*partial)[2];                              // [chunks] energy, sum of squared forces
 };
 
@@ -616,16 +616,18 @@ static void add_hinge_block(double stiffness, const double row[3], const double 
     }
 }
 
-// Gradients of the angles of a triangle's hinges by the vertices of its patch.
+// Gradients of the angles of a triangle's hinges, times its parts of them, by the vertices of its patch.
 static void set_patch_gradient(const ruga_shell* shell, int f) {
     double(*to)[PATCH][3] = shell->patch_gradient[f];
     memset(to, 0, sizeof shell->patch_gradient[f]);
     for (int i = 0; i < 3; i++) {
         int h = shell->triangle_hinge[f][i];
+        bool first = h >= 0 && shell->directors.hinge_triangle[h][0] == f;
+        double weight = h >= 0 ? shell->directors.weight[h][!first] : 0;
         for (int c = 0; c < 4 && h >= 0; c++) {
             int k = c < 2 ? (shell->hinge[h][c] == shell->triangle[f][i] ? i : (i + 1) % 3)
-                          : ((c == 2) == (shell->directors.hinge_triangle[h][0] == f) ? (i + 2) % 3 : 3 + i);
-            memcpy(to[i][k], shell->hinge_gradient[h][c], sizeof to[i][k]);
+                          : ((c == 2) == first ? (i + 2) % 3 : 3 + i);
+            ruga_add_scaled(weight, shell->hinge_gradient[h][c], to[i][k]);
         }
     }
 }
@@ -638,11 +640,11 @@ static void patch_gradients(int begin, int end, int chunk, void* context) {
     }
 }
 
-// K of directors.c over 4 between two rows of gradients.
+// K of directors.c between two rows of gradients.
 static void add_patch_block(const ruga_shell* shell, int f, int row, int column, double sum[9]) {
     const double(*g)[PATCH][3] = (const double(*)[PATCH][3])shell->patch_gradient[f];
     for (int i = 0; i < 9; i++) {
-        double k = 0.25 * shell->directors.stiffness[f][i / 3][i % 3];
+        double k = shell->directors.stiffness[f][i / 3][i % 3];
         if (k != 0) {
             add_hinge_block(k, g[i / 3][row], g[i % 3][column], sum);
         }
