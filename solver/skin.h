@@ -5,8 +5,7 @@
 //     minimise  E(x) = shell + foundation + loads + weight (+ proximal term)   over x
 //     subject to  H x = H B q   and   held components fixed.
 // skin.c evaluates, factorises its KKT matrix [K H^T; H 0] and projects; ruga_skin_minimize calls a method.
-// With directors (shell/directors.h) E is the least over their rotations f, which are no unknowns of x: only the
-// matrix holds them, [K H^T C^T; H 0 0; C 0 M], and what is solved with it is the system without them.
+// The rotations of directors (shell/directors.h) are only in the matrix, [K H^T C^T; H 0 0; C 0 M].
 #ifndef RUGA_SOLVER_SKIN_H
 #define RUGA_SOLVER_SKIN_H
 
@@ -29,11 +28,9 @@ typedef struct ruga_skin_work {
 typedef struct ruga_skin {
     const ruga_model* model;
     ruga_shell* shell;
-    int n; // 3 V
-    int m; // 3 clusters
-    int size; // n + m + directors: of the matrix
+    int n, m, size; // 3 V, 3 clusters, n + m + directors
 
-    ruga_sparse kkt;        // lower triangle of the matrix
+    ruga_sparse kkt;        // lower triangle of the matrix, of `size`
     int* column_shift;      // [n] from a column of the shell's pattern to the same one of kkt
     int* foundation_slot;
     double* stiffness;      // K as last assembled, without shift, in the shell's pattern
@@ -101,9 +98,8 @@ ruga_status ruga_skin_restore(ruga_skin* skin, double* x);
 // |H x - H B q| / |H B q|
 double ruga_skin_constraint_residual(ruga_skin* skin, const double* x);
 
-// y = K v, less the directors' part, with the stiffness last assembled.
+// y = (K - C^T M^-1 C) v as last assembled. multiply: held components zeroed; v is zero there.
 void ruga_skin_apply(const ruga_skin* skin, const double* v, double* y);
-// The same of the last factor, held components zeroed; v is zero there.
 void ruga_skin_multiply(const ruga_skin* skin, const double* v, double* y);
 
 typedef struct ruga_skin_result {
@@ -143,10 +139,8 @@ ruga_status ruga_armijo_search(ruga_skin* skin, const double* d, double* x, ruga
 ruga_status ruga_negative_curvature_step(ruga_skin* skin, double* x, ruga_skin_terms* terms, double* gradient,
                                          bool* moved);
 
-// Largest vertex displacement in a vector [n].
-double ruga_largest_move(int n, const double* d);
+double ruga_largest_move(int n, const double* d); // of a vertex, in a vector [n]
 double ruga_dot_product(int n, const double* a, const double* b);
-
 enum { RUGA_SKIN_WORK_VECTORS = 24 };
 // Work vector i of length `size`.
 static inline double* ruga_skin_vector(ruga_skin* skin, int i) {
