@@ -6,25 +6,65 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { LEVELS = 3, FINEST = 40 };
+enum { LEVELS = 3, FINEST = 40, QUICK = 20 };
 
-// One benchmark on one mesh: states its lines.
-static ruga_status measure(ruga_validation* v, const shell_benchmark* b, const shell_run* run, FILE* table) {
+// One benchmark at one resolution: the lines of the finest are stated, all are written. What is judged is the
+// Kirchhoff-Love element on the irregular mesh.
+static ruga_status measure(ruga_validation* v, const shell_benchmark* b, const shell_run* run, int stated,
+                           FILE* table) {
     double value[SHELL_VALUES] = {0};
     int bad = 0;
     RUGA_TRY(b->run(run, value, &bad));
     const char* mesh = run->irregular ? "irregular" : "regular";
+    const char* element = run->bending == RUGA_BENDING_HINGE ? "hinge" : "kirchhoff-love";
     for (int i = 0; i < b->value_count; i++) {
-        char name[160];
-        (void)snprintf(name, sizeof name, "%s, %s %d: %s", b->name, mesh, run->level, b->quantity[i]);
-        (void)fprintf(table, "%s,%s,%s,%d,%.9g,%.9g,%d\n", b->name, b->quantity[i], mesh, run->level, value[i],
-                      b->reference[i], bad);
-        ruga_validation_record(v, name, value[i], b->reference[i], b->source);
+        char name[200];
+        (void)snprintf(name, sizeof name, "%s: %s, %s mesh, %s", b->name, b->quantity[i], mesh, element);
+        (void)fprintf(table, "%s,%s,%s,%s,%d,%.9g,%.9g,%.4f,%d\n", b->name, b->quantity[i], element, mesh, run->level,
+                      value[i], b->reference[i], value[i] / b->reference[i] - 1, bad);
+        if (run->level == stated && run->irregular && run->bending == RUGA_BENDING_KIRCHHOFF_LOVE) {
+            ruga_validation_near(v, name, value[i], b->reference[i], b->tolerance, b->source);
+        } else if (run->level == stated) {
+            ruga_validation_record(v, name, value[i], b->reference[i], b->source);
+        }
     }
     if (bad) {
-        ruga_validation_note(v, "%s, %s %d: %d frames did not end in a minimum.", b->name, mesh, run->level, bad);
+        ruga_validation_note(v, "%s, %s, %s mesh, %d elements per side: %d frames did not end in a minimum.", b->name,
+                             element, mesh, run->level, bad);
     }
     return RUGA_OK;
+}
+
+static ruga_status measure_all(ruga_validation* v, FILE* table) {
+    bool quick = ruga_validation_is_quick(v);
+    for (int k = 0; k < shell_benchmark_count; k++) {
+        for (int i = 0; i < 4 * LEVELS && !quick; i++) {
+            shell_run run = {.level = FINEST >> (LEVELS - 1 - i / 4),
+                             .irregular = i % 4 < 2,
+                             .bending = i % 2 ? RUGA_BENDING_HINGE : RUGA_BENDING_KIRCHHOFF_LOVE};
+            RUGA_TRY(measure(v, &shell_benchmarks[k], &run, FINEST, table));
+        }
+        shell_run run = {.level = QUICK, .irregular = true, .bending = RUGA_BENDING_KIRCHHOFF_LOVE};
+        if (quick && shell_benchmarks[k].quick) {
+            RUGA_TRY(measure(v, &shell_benchmarks[k], &run, QUICK, table));
+        }
+    }
+    return RUGA_OK;
+}
+
+static void explain(ruga_validation* v) {
+    ruga_validation_note(
+        v, "Judged are the lines of `bending: kirchhoff-love` on the irregular mesh (vertices moved by up to 0.3 cells), "
+           "with 40 elements per side; the other lines show what the choice of mesh and element does. All resolutions "
+           "are in the table beside this report.");
+    ruga_validation_note(
+        v, "Hinges bend as a plate with Poisson's ratio -1/3 on equilateral triangles, whatever the material's: where two "
+           "curvatures meet (roof, hemisphere, buckling by twist) their error does not go away with the mesh; "
+           "(1 - nu) / (4/3) = 0.525 is what the hemisphere shows. On irregular triangles they are 5 to 10 %% too stiff as "
+           "well. `kirchhoff-love` cures both.");
+    ruga_validation_note(
+        v, "A clamp is two rows of held vertices, the outer one a hundredth of a cell away: a hinge or director at a "
+           "clamped edge stands for half a cell, and not for half of a held one as well.");
 }
 
 static ruga_status run(ruga_validation* v) {
@@ -34,21 +74,19 @@ static ruga_status run(ruga_validation* v) {
     if (!table) {
         return ruga_fail(RUGA_IO, "%s could not be opened for writing", path);
     }
-    (void)fprintf(table, "benchmark,quantity,mesh,level,ours,reference,frames not in a minimum\n");
-    ruga_status status = RUGA_OK;
-    for (int k = 0; k < shell_benchmark_count && status == RUGA_OK; k++) {
-        for (int i = 0; i < 2 * LEVELS && status == RUGA_OK; i++) {
-            shell_run run = {.level = FINEST >> (LEVELS - 1 - i / 2), .irregular = i % 2};
-            status = measure(v, &shell_benchmarks[k], &run, table);
-        }
-    }
-    (void)fclose(table);
-    return status;
+    (void)fprintf(table, "benchmark,quantity,bending,mesh,elements,ours,reference,difference,not a minimum\n");
+    ruga_status status = measure_all(v, table);
+    bool written = fclose(table) == 0;
+    explain(v);
+    return status == RUGA_OK && !written ? ruga_fail(RUGA_IO, "%s could not be written", path) : status;
 }
 
 const ruga_validation_case ruga_validate_shell = {
     .name = "shell",
     .title = "The shell alone against classical benchmarks",
-    .about = "Strips and shells of textbooks, on regular and on irregular meshes.",
+    .about = "Strips and shells of the literature without an interior, on regular and on irregular meshes, by both "
+             "bending elements: large bending (Sze, Liu and Lo 2004; elastica), buckling by twist (Prandtl), the linear "
+             "obstacle course (Scordelis-Lo, pinched cylinder, hemisphere) and a roll whose energy is known.",
+    .quick = true,
     .run = run,
 };

@@ -439,7 +439,7 @@ static double row_wavelength(const bench* b, int frame, int row) {
 
 // Cerda and Mahadevan 2003: lambda = 2 sqrt(pi) (B/T)^(1/4) L^(1/2) at a strain of 5 and 10 percent.
 static ruga_status run_stretched(const shell_run* run, double* value, int* bad) {
-    const double h = 5e-5;
+    const double h = 2e-5;
     shell_patch_def patch = {.across = 2 * run->level,
                              .along = rows_for(0.25, 0.1, 2 * run->level, 4),
                              .irregular = run->irregular,
@@ -463,15 +463,15 @@ done:
 
 const shell_benchmark shell_benchmarks[] = {
     {"cantilever", "Sze, Liu and Lo 2004; elastica", true, 0.03, 2, {"-U", "W"}, {3.2894, 6.6996}, run_cantilever},
-    {"slit annulus", "Sze, Liu and Lo 2004", true, 0.03, 4,
+    {"slit annulus", "Sze, Liu and Lo 2004", false, 0.03, 4,
      {"W_A at P/2", "W_B at P/2", "W_A at P", "W_B at P"}, {10.468, 13.768, 13.891, 17.528}, run_annulus},
     {"heavy cantilever", "elastica; Romero et al. 2021", true, 0.03, 3,
      {"H/W at 10", "H/W at 30", "H/W at 100"}, {1.0668, 2.5472, 5.8881}, run_heavy},
-    {"buckling under a tip load", "Prandtl 1899", true, 0.03, 1, {"P L^2 / sqrt(EI GJ)"}, {4.0126},
+    {"buckling under a tip load", "Prandtl 1899", false, 0.03, 1, {"P L^2 / sqrt(EI GJ)"}, {4.0126},
      run_buckling_tip},
-    {"buckling under weight", "Prandtl 1899", true, 0.03, 1, {"q L^3 / sqrt(EI GJ)"}, {12.854},
+    {"buckling under weight", "Prandtl 1899", false, 0.03, 1, {"q L^3 / sqrt(EI GJ)"}, {12.854},
      run_buckling_weight},
-    {"roll", "closed form", true, 0.03, 2, {"energy / (D/2 kappa^2 A)", "height / R"}, {1, 1}, run_roll},
+    {"roll", "closed form", false, 0.03, 2, {"energy / (D/2 kappa^2 A)", "height / R"}, {1, 1}, run_roll},
     {"Scordelis-Lo roof", "MacNeal and Harder 1985", false, 0.03, 1, {"sag"}, {0.3024}, run_roof},
     {"pinched cylinder", "Belytschko et al. 1985", false, 0.03, 1, {"deflection"}, {1.82488e-5}, run_cylinder},
     {"hemisphere", "Simo, Fox and Rifai 1989", true, 0.03, 1, {"deflection"}, {0.0935}, run_hemisphere},

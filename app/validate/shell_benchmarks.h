@@ -18,7 +18,7 @@ enum { SHELL_VALUES = 6 };
 typedef struct shell_benchmark {
     const char* name;
     const char* source;
-    bool bends; // nearly inextensional: what the bending element decides
+    bool quick; // takes seconds
     double tolerance;
     int value_count;
     const char* quantity[SHELL_VALUES];
