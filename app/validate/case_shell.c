@@ -8,8 +8,16 @@
 
 enum { LEVELS = 3, FINEST = 40, QUICK = 20 };
 
-// One benchmark at one resolution: the lines of the finest are stated, all are written. What is judged is the
-// Kirchhoff-Love element on the irregular mesh.
+// What is judged is the Kirchhoff-Love element on the irregular mesh, but where tension decides and not the bending.
+static bool is_judged(const shell_benchmark* b, const shell_run* run) {
+    return b->aligned ? !run->irregular : run->irregular && run->bending == RUGA_BENDING_KIRCHHOFF_LOVE;
+}
+
+static bool is_run(const shell_benchmark* b, const shell_run* run) {
+    return !b->aligned || (run->bending == RUGA_BENDING_HINGE && run->level >= (run->irregular ? FINEST : QUICK));
+}
+
+// One benchmark at one resolution: the lines of the finest are stated, all are written.
 static ruga_status measure(ruga_validation* v, const shell_benchmark* b, const shell_run* run, int stated,
                            FILE* table) {
     double value[SHELL_VALUES] = {0};
@@ -22,7 +30,7 @@ static ruga_status measure(ruga_validation* v, const shell_benchmark* b, const s
         (void)snprintf(name, sizeof name, "%s: %s, %s mesh, %s", b->name, b->quantity[i], mesh, element);
         (void)fprintf(table, "%s,%s,%s,%s,%d,%.9g,%.9g,%.4f,%d\n", b->name, b->quantity[i], element, mesh, run->level,
                       value[i], b->reference[i], value[i] / b->reference[i] - 1, bad);
-        if (run->level == stated && run->irregular && run->bending == RUGA_BENDING_KIRCHHOFF_LOVE) {
+        if (run->level == stated && is_judged(b, run)) {
             ruga_validation_near(v, name, value[i], b->reference[i], b->tolerance, b->source);
         } else if (run->level == stated) {
             ruga_validation_record(v, name, value[i], b->reference[i], b->source);
@@ -42,7 +50,9 @@ static ruga_status measure_all(ruga_validation* v, FILE* table) {
             shell_run run = {.level = FINEST >> (LEVELS - 1 - i / 4),
                              .irregular = i % 4 < 2,
                              .bending = i % 2 ? RUGA_BENDING_HINGE : RUGA_BENDING_KIRCHHOFF_LOVE};
-            RUGA_TRY(measure(v, &shell_benchmarks[k], &run, FINEST, table));
+            if (is_run(&shell_benchmarks[k], &run)) {
+                RUGA_TRY(measure(v, &shell_benchmarks[k], &run, FINEST, table));
+            }
         }
         shell_run run = {.level = QUICK, .irregular = true, .bending = RUGA_BENDING_KIRCHHOFF_LOVE};
         if (quick && shell_benchmarks[k].quick) {
@@ -62,6 +72,19 @@ static void explain(ruga_validation* v) {
            "curvatures meet (roof, hemisphere, buckling by twist) their error does not go away with the mesh; "
            "(1 - nu) / (4/3) = 0.525 is what the hemisphere shows. On irregular triangles they are 5 to 10 %% too stiff as "
            "well. `kirchhoff-love` cures both.");
+    ruga_validation_note(
+        v, "Pinched cylinder: the element is too soft under a point load, and comes to the reference from above (8 %% at 40, "
+           "3 %% at 80 elements on a quarter of the way round, regular mesh). Hinges happen to be nearer, as their wrong "
+           "Poisson's ratio makes up for it. Cure: a finer mesh at the load, or a load spread over the thickness.");
+    ruga_validation_note(
+        v, "Stretched sheet, by hinges: across the tension T a row of linear triangles zigzags over a wrinkle, and the "
+           "tension pulls that straight like a bending stiffness T edge^2 / 48, here 40 times the sheet's own. So it stays "
+           "flat on irregular meshes, and wrinkles only where rows of edges follow the tension. That is the membrane's "
+           "doing and no bending element's. The wavelength on aligned rows is shorter than the law; the cause was not found "
+           "(load steps of 0.2 %%, against an onset near 0.1 %%, may have frozen a short mode).");
+    ruga_validation_note(
+        v, "Buckling by twist: Prandtl's strip is narrow; here its width is a twentieth of its length. At a tenth, "
+           "warping that the clamp holds adds 3.8 %% (tip load) and 5.7 %% (weight), the same on both meshes.");
     ruga_validation_note(
         v, "A clamp is two rows of held vertices, the outer one a hundredth of a cell away: a hinge or director at a "
            "clamped edge stands for half a cell, and not for half of a held one as well.");

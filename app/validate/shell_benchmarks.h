@@ -18,7 +18,8 @@ enum { SHELL_VALUES = 6 };
 typedef struct shell_benchmark {
     const char* name;
     const char* source;
-    bool quick; // takes seconds
+    bool quick;   // takes seconds
+    bool aligned; // only a regular mesh can show it
     double tolerance;
     int value_count;
     const char* quantity[SHELL_VALUES];
