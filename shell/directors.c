@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// A Kirchhoff-Love bending energy with directors at the middles of edges (Morley 1968 for plates; Grinspun, Gingold,
-// Reisman and Zorin 2006, "Computing discrete shape operators on general meshes", eq. 4, for shells). At edge i the
-// director leans by a_i from the triangle's normal, about the edge; the change of the second fundamental form since
-// rest is constant on the triangle,
+// A Kirchhoff-Love bending energy with directors at the middles of edges (Morley 1968 for plates; Grinspun,
+// Gingold, Reisman and Zorin 2006, "Computing discrete shape operators on general meshes", eq. 4, for
+// shells). At edge i the director leans by a_i from the triangle's normal, about the edge; the change of the
+// second fundamental form since rest is constant on the triangle,
 //     b = sum_i a_i (l_i / A) m_i m_i^T = sum_i 2 a_i g_i g_i^T / |g_i|,
-// l_i the edge's length, m_i its normal in the plane, g_i the gradient of the shape function of the corner opposite
-// it, all at rest. The energy is that of a plate, E = A D/2 [(1 - nu) b:b + nu (tr b)^2] = a.K a / 2 with
+// l_i the edge's length, m_i its normal in the plane, g_i the gradient of the shape function of the corner
+// opposite it, all at rest. The energy is that of a plate, E = A D/2 [(1 - nu) b:b + nu (tr b)^2] = a.K a / 2
+// with
 //     K_ij = 4 A D [(1 - nu) (g_i.g_j)^2 + nu |g_i|^2 |g_j|^2] / (|g_i| |g_j|).
-// The two triangles at an edge share the director, so that their a add up to the change t of the hinge's angle:
+// The two triangles at an edge share the director, so that their a add up to the change t of the hinge's
+// angle:
 //     a = w t + f in the one, a = w' t - f in the other, w + w' = 1.
-// w is the other triangle's part of K_ii + K'_ii, which keeps f small, whatever the two weigh; f is what the mesh's
-// shape makes of it. Averaged normals (f = 0, w = 1/2) are wrong by tens of percent on irregular meshes, however fine.
-// Here f is where the energy is least: M f = -c(t), M constant, positive definite and, as a
-// mass matrix is, well conditioned, so that conjugate gradients scaled by its diagonal find it to round-off in some
-// tens of steps. (The same as the lowest-order method of Hellan, Herrmann and Johnson: hinges are what its matrix
-// becomes when it is lumped, at nu = -1/3 on equilateral triangles.) At the rim a is free by itself.
+// w is the other triangle's part of K_ii + K'_ii, which keeps f small, whatever the two weigh; f is what the
+// mesh's shape makes of it. Averaged normals (f = 0, w = 1/2) are wrong by tens of percent on irregular
+// meshes, however fine. Here f is where the energy is least: M f = -c(t), M constant, positive definite and,
+// as a mass matrix is, well conditioned, so that conjugate gradients scaled by its diagonal find it to
+// round-off in some tens of steps. (The same as the lowest-order method of Hellan, Herrmann and Johnson:
+// hinges are what its matrix becomes when it is lumped, at nu = -1/3 on equilateral triangles.) At the rim a
+// is free by itself.
 //
-// At the minimum over f, with moment m_e = dE/dt_e, dE/dx = sum m_e grad t_e. The Hessian is that over x and f
-// together with f eliminated; ruga_shell hands out its three parts.
+// At the minimum over f, with moment m_e = dE/dt_e, dE/dx = sum m_e grad t_e. The Hessian is that over x and
+// f together with f eliminated; ruga_shell hands out its three parts.
 #include "shell/directors.h"
 
 #include "core/memory.h"
@@ -49,7 +52,8 @@ void ruga_director_stiffness(const ruga_membrane_rest* rest, double area, double
     double g[3][2], length[3];
     for (int i = 0; i < 3; i++) {
         for (int a = 0; a < 2; a++) {
-            const double slope[3] = {-rest->slope[0][a] - rest->slope[1][a], rest->slope[0][a], rest->slope[1][a]};
+            const double slope[3] = {-rest->slope[0][a] - rest->slope[1][a], rest->slope[0][a],
+                                     rest->slope[1][a]};
             g[i][a] = slope[(i + 2) % 3];
         }
         length[i] = hypot(g[i][0], g[i][1]);
@@ -186,9 +190,9 @@ ruga_status ruga_directors_link(ruga_directors* d) {
 }
 
 void ruga_directors_clear(ruga_directors* d) {
-    void* const owned[] = {d->weight,      d->stiffness,   d->hinge_triangle, d->start,    d->edge,  d->slot,
-                           d->slot_vertex, d->rotation,       d->residual, d->image, d->direction,
-                           d->diagonal};
+    void* const owned[] = {d->weight,   d->stiffness, d->hinge_triangle, d->start,
+                           d->edge,     d->slot,      d->slot_vertex,    d->rotation,
+                           d->residual, d->image,     d->direction,      d->diagonal};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
         ruga_release(owned[i]);
     }
@@ -210,7 +214,8 @@ static void triangle_moments(const ruga_directors* d, int f, const double* angle
         }
     }
     for (int i = 0; i < 3; i++) {
-        moment[i] = d->stiffness[f][i][0] * a[0] + d->stiffness[f][i][1] * a[1] + d->stiffness[f][i][2] * a[2];
+        moment[i] =
+            d->stiffness[f][i][0] * a[0] + d->stiffness[f][i][1] * a[1] + d->stiffness[f][i][2] * a[2];
     }
 }
 
@@ -284,7 +289,8 @@ void ruga_directors_coupling(const ruga_directors* d, double (*const gradient)[4
             if (other < 0) {
                 continue;
             }
-            double part = d->weight[other][d->hinge_triangle[other][0] != f] * d->stiffness[f][local_edge(d, f, h)][j];
+            double part =
+                d->weight[other][d->hinge_triangle[other][0] != f] * d->stiffness[f][local_edge(d, f, h)][j];
             while (d->slot_vertex[h][i] != d->hinge[other][k % 4]) {
                 i++;
             }

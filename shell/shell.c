@@ -13,9 +13,9 @@
 // element first, and then gathered for each vertex, in an order that the mesh alone decides: the bits are the
 // same for any number of threads.
 //
-// With directors (directors.c) a hinge's moment is not its stiffness times its angle but comes from all of them. The
-// part w grad t K (w grad t)^T couples the three hinges of a triangle, and so its corners with those of its neighbours:
-// this patch of up to six vertices is one more element.
+// With directors (directors.c) a hinge's moment is not its stiffness times its angle but comes from all of
+// them. The part w grad t K (w grad t)^T couples the three hinges of a triangle, and so its corners with
+// those of its neighbours: this patch of up to six vertices is one more element.
 #include "shell/shell.h"
 
 #include "core/memory.h"
@@ -54,8 +54,8 @@ struct ruga_shell {
     hinge_rest* hinge_rest;            // [H]
     bool has_directors;
     ruga_directors directors;
-    int (*patch)[PATCH];               // [F] with directors: corners, then the corner across edge i or -1
-    double* vertex_mass;               // [V]
+    int (*patch)[PATCH]; // [F] with directors: corners, then the corner across edge i or -1
+    double* vertex_mass; // [V]
     ruga_sparse pattern;
     int* block_start;       // [V + 1] first 3 x 3 block of a vertex's columns
     gather vertex_triangle; // vertex <- 3 triangle + corner
@@ -225,14 +225,15 @@ static void set_patch(ruga_shell* shell, const ruga_connectivity* connectivity) 
     }
 }
 
-// A held triangle does not bend: without this its directors would give way by themselves, as its corners do not hold
-// them. Its edges become hinges, and those on its border clamp.
+// A held triangle does not bend: without this its directors would give way by themselves, as its corners do
+// not hold them. Its edges become hinges, and those on its border clamp.
 static void hold_directors(ruga_shell* shell, const ruga_shell_material* material, int f) {
     const double clamp = 1e6; // times the triangle's own stiffness
     const ruga_directors* d = &shell->directors;
     for (int i = 0; i < 3; i++) {
         int h = shell->triangle_hinge[f][i];
-        bool border = h >= 0 && !(material->held[d->hinge_triangle[h][0]] && material->held[d->hinge_triangle[h][1]]);
+        bool border =
+            h >= 0 && !(material->held[d->hinge_triangle[h][0]] && material->held[d->hinge_triangle[h][1]]);
         for (int j = 0; j < 3; j++) {
             d->stiffness[f][i][j] *= i != j ? 0 : border ? clamp : 1;
         }
@@ -531,7 +532,8 @@ static void hinge_energies(int begin, int end, int chunk, void* context) {
         const hinge_rest* rest = &shell->hinge_rest[h];
         hinge_corners(shell->hinge[h], p->x, x);
         bool known = shell->has_directors; // angle and moment, by settle_directors
-        double angle = known ? shell->hinge_angle[h] : ruga_angle_difference(ruga_hinge_angle(x, g), rest->angle);
+        double angle =
+            known ? shell->hinge_angle[h] : ruga_angle_difference(ruga_hinge_angle(x, g), rest->angle);
         double moment = known ? shell->hinge_moment[h] : rest->stiffness * angle;
         shell->hinge_moment[h] = moment;
         energy += 0.5 * moment * angle;

@@ -35,15 +35,15 @@ static double noise(ruga_random* random) {
     return 2 * ruga_random_uniform(random) - 1;
 }
 
-// Quads of side 1 in z = 0 with diagonals at random, vertices moved within the plane by up to `jitter` (the rim along
-// itself) and out of it by up to `bump`.
+// Quads of side 1 in z = 0 with diagonals at random, vertices moved within the plane by up to `jitter` (the
+// rim along itself) and out of it by up to `bump`.
 static void make_grid(int nx, int ny, double jitter, double bump, ruga_mesh* mesh) {
     double* position = calloc(3 * MOST, sizeof *position);
     int *triangle = calloc(6 * MOST, sizeof *triangle), v = 0, f = 0;
     ruga_random random = {7};
     for (int j = 0; j <= ny; j++) {
         for (int i = 0; i <= nx; i++, v++) {
-            bool in_x = i > 0 && i < nx, in_y = j > 0 && j < ny;
+            bool in_x = i > 0 && i<nx, in_y = j> 0 && j < ny;
             position[3 * v] = i + (in_x ? jitter * noise(&random) : 0);
             position[3 * v + 1] = j + (in_y ? jitter * noise(&random) : 0);
             position[3 * v + 2] = bump * noise(&random);
@@ -271,7 +271,8 @@ static void clamped_hessian_is_positive_semidefinite(void** state) {
     clear(&fix);
 }
 
-// Energy of a sheet of n x n irregular cells on z = (h_xx x^2 + 2 h_xy x y + h_yy y^2) / 2, over that of a plate.
+// Energy of a sheet of n x n irregular cells on z = (h_xx x^2 + 2 h_xy x y + h_yy y^2) / 2, over that of a
+// plate.
 static double plate_ratio(int n, const double h[3]) {
     fixture fix;
     make(&fix, n, n, 0.3, 0, &plain_skin);
@@ -291,8 +292,9 @@ static double plate_ratio(int n, const double h[3]) {
     return e.bending / (0.5 * d * tiny * tiny * ((1 - nu) * square + nu * trace * trace) * n * n);
 }
 
-// The rim carries no moment, so that a row of triangles there bends less than the rest: an error of first order, which
-// extrapolation from n and 2 n cells takes out. What is left is that irregular triangles bend as a plate does.
+// The rim carries no moment, so that a row of triangles there bends less than the rest: an error of first
+// order, which extrapolation from n and 2 n cells takes out. What is left is that irregular triangles bend as
+// a plate does.
 static void every_curvature_has_the_energy_of_a_plate_on_an_irregular_mesh(void** state) {
     (void)state;
     const double curvature[][3] = {{1, 0, 0}, {0, 0, 1}, {0.5, 0.5, 0.5}, {1, 0, 1}, {1, 0, -1}, {0, 1, 0}};

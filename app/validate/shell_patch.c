@@ -70,8 +70,8 @@ static ruga_status fill(const shell_patch_def* def, shell_patch* patch, double* 
     for (int r = 0; r < patch->row_count; r++) {
         place_row(def, r, 7, position + 3 * (size_t)patch->row[r]);
         if (r > 0) {
-            faces += join_rows(def, row_number(def, r - 1), row_number(def, r), patch->row[r - 1], patch->row[r],
-                               triangle + 3 * (size_t)faces);
+            faces += join_rows(def, row_number(def, r - 1), row_number(def, r), patch->row[r - 1],
+                               patch->row[r], triangle + 3 * (size_t)faces);
         }
     }
     ruga_mesh_def mesh = {.vertex_count = patch->row[patch->row_count],
