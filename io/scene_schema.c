@@ -75,7 +75,7 @@ const ruga_key ruga_keys[] = {
            "Stretching energy: Baraff-Witkin or St Venant-Kirchhoff; the same at small strain."),
     CHOICE("skin.bending", MODEL(skin.bending), "hinge", "hinge|kirchhoff-love",
            "Bending energy. hinge: an angle at each edge, as the 2013 paper; exact for cylinders on equilateral "
-           "triangles, but 10 to 20 % too stiff on irregular ones, and with Poisson's ratio -1/3 whatever "
+           "triangles, but 5 to 20 % too stiff on irregular ones, and with Poisson's ratio -1/3 whatever "
            "`poisson`. kirchhoff-love: directors at the middles of edges, right on any mesh and for any curvature, "
            "at about three times the time."),
     NUMBERS("skin.growth", 2, MODEL(skin.growth), "1", "[1, 1]", POSITIVE,
