@@ -30,7 +30,7 @@ static ruga_status measure(ruga_validation* v, const shell_benchmark* b, const s
     for (int i = 0; i < b->value_count; i++) {
         char name[200];
         (void)snprintf(name, sizeof name, "%s: %s, %s mesh, %s", b->name, b->quantity[i], mesh, element);
-        (void)fprintf(table, "%s,%s,%s,%s,%d,%.9g,%.9g,%.4f,%d\n", b->name, b->quantity[i], element, mesh,
+        (void)fprintf(table, "%s,\"%s\",%s,%s,%d,%.9g,%.9g,%.4f,%d\n", b->name, b->quantity[i], element, mesh,
                       run->level, value[i], b->reference[i], value[i] / b->reference[i] - 1, bad);
         if (run->level == stated && is_judged(b, run)) {
             ruga_validation_near(v, name, value[i], b->reference[i], b->tolerance, b->source);
