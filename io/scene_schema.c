@@ -93,6 +93,11 @@ const ruga_key ruga_keys[] = {
     NUMBER("skin.density", MODEL(skin.density), "kg/m^3", "900 kg/m^3", NOT_NEGATIVE, "Density."),
     CHOICE("skin.membrane", MODEL(skin.membrane), "baraff-witkin", "baraff-witkin|stvk",
            "Stretching energy: Baraff-Witkin or St Venant-Kirchhoff; the same at small strain."),
+    CHOICE("skin.bending", MODEL(skin.bending), "hinge", "hinge|kirchhoff-love",
+           "Bending energy. hinge: an angle at each edge, as the 2013 paper; exact for cylinders on equilateral "
+           "triangles, but 5 to 20 % too stiff on irregular ones, and with Poisson's ratio -1/3 whatever "
+           "`poisson`. kirchhoff-love: directors at the middles of edges, right on any mesh and for any curvature, "
+           "at about three times the time."),
     NUMBERS("skin.growth", 2, MODEL(skin.growth), "1", "[1, 1]", POSITIVE,
             "Rest lengths along and across the skin's first direction are multiplied by these."),
     CHOICE(

@@ -12,6 +12,10 @@
 // and a hinge's own part is made from its gradient when it is gathered. Everything is computed for each
 // element first, and then gathered for each vertex, in an order that the mesh alone decides: the bits are the
 // same for any number of threads.
+//
+// With directors (directors.c) a hinge's moment is not its stiffness times its angle but comes from all of
+// them. The part w grad t K (w grad t)^T couples the three hinges of a triangle, and so its corners with
+// those of its neighbours: this patch of up to six vertices is one more element.
 #include "shell/shell.h"
 
 #include "core/memory.h"
@@ -25,6 +29,8 @@
 
 // Elements or vertices in one piece of parallel work.
 enum { CHUNK = 256 };
+// Vertices of a triangle and its neighbours.
+enum { PATCH = 6 };
 
 typedef struct hinge_rest {
     double stiffness; // k = D |e|^2 / (A1 + A2), J
@@ -46,18 +52,24 @@ struct ruga_shell {
     int (*triangle_hinge)[3];          // [F] hinge at the edge from corner i to corner i + 1, or -1
     int (*hinge)[4];                   // [H] as in ruga_hinge_angle
     hinge_rest* hinge_rest;            // [H]
-    double* vertex_mass;               // [V]
+    bool has_directors;
+    ruga_directors directors;
+    int (*patch)[PATCH]; // [F] with directors: corners, then the corner across edge i or -1
+    double* vertex_mass; // [V]
     ruga_sparse pattern;
     int* block_start;       // [V + 1] first 3 x 3 block of a vertex's columns
     gather vertex_triangle; // vertex <- 3 triangle + corner
     gather vertex_hinge;    // vertex <- 4 hinge + corner
     gather block_triangle;  // block <- 9 triangle + 3 row corner + column corner
     gather block_hinge;     // block <- 16 hinge + 4 row corner + column corner
+    gather block_patch;     // block <- 36 triangle + 6 row + column; in place of block_hinge with directors
     // Scratch of ruga_shell_energy, which writes here although the shell is const.
     double (*triangle_gradient)[3][3];                 // [F]
     double (*triangle_block)[RUGA_TRIANGLE_BLOCKS][9]; // [F]
     double (*hinge_gradient)[4][3];                    // [H] of the angle
     double* hinge_moment;                              // [H] k (theta - theta0)
+    double* hinge_angle;                               // [H] with directors: theta - theta0
+    double (*patch_gradient)[3][PATCH][3];             // [F] with directors: of w t
     double (*partial)[2];                              // [chunks] energy, sum of squared forces
 };
 
@@ -206,6 +218,61 @@ static void set_hinges(ruga_shell* shell, const ruga_mesh* mesh, const ruga_conn
     }
 }
 
+// The triangle's patch, and each hinge's triangles.
+static void set_patch(ruga_shell* shell, const ruga_connectivity* connectivity) {
+    ruga_directors* d = &shell->directors;
+    for (int e = 0, h = 0; e < connectivity->edge_count; e++) {
+        const int* side = connectivity->edge_triangle[e];
+        if (side[0] >= 0 && side[1] >= 0) {
+            memcpy(d->hinge_triangle[h++], side, sizeof d->hinge_triangle[0]);
+        }
+    }
+    for (int f = 0; f < shell->triangle_count; f++) {
+        for (int i = 0; i < 3; i++) {
+            int h = shell->triangle_hinge[f][i];
+            shell->patch[f][i] = shell->triangle[f][i];
+            shell->patch[f][3 + i] = h < 0 ? -1 : shell->hinge[h][d->hinge_triangle[h][0] == f ? 3 : 2];
+        }
+    }
+}
+
+// A held triangle does not bend: without this its directors would give way by themselves, as its corners do
+// not hold them. Its edges become hinges, and those on its border clamp.
+static void hold_directors(ruga_shell* shell, const ruga_shell_material* material, int f) {
+    const double clamp = 1e6; // times the triangle's own stiffness
+    const ruga_directors* d = &shell->directors;
+    for (int i = 0; i < 3; i++) {
+        int h = shell->triangle_hinge[f][i];
+        bool border =
+            h >= 0 && !(material->held[d->hinge_triangle[h][0]] && material->held[d->hinge_triangle[h][1]]);
+        for (int j = 0; j < 3; j++) {
+            d->stiffness[f][i][j] *= i != j ? 0 : border ? clamp : 1;
+        }
+    }
+}
+
+static ruga_status set_directors(ruga_shell* shell, const ruga_connectivity* connectivity,
+                                 const ruga_shell_material* material, const double* area) {
+    ruga_directors* d = &shell->directors;
+    RUGA_TRY(ruga_directors_create(shell->vertex_count, shell->triangle_count,
+                                   (const int(*)[3])shell->triangle_hinge, shell->hinge_count,
+                                   (const int(*)[4])shell->hinge, d));
+    RUGA_TRY(RUGA_NEW(shell->patch, shell->triangle_count));
+    RUGA_TRY(RUGA_NEW(shell->hinge_angle, shell->hinge_count));
+    RUGA_TRY(RUGA_NEW(shell->patch_gradient, shell->triangle_count));
+    set_patch(shell, connectivity);
+    for (int f = 0; f < shell->triangle_count; f++) {
+        const int* h = shell->triangle_hinge[f];
+        const bool rim[3] = {h[0] < 0, h[1] < 0, h[2] < 0};
+        ruga_director_stiffness(&shell->triangle_rest[f], area[f], bending_stiffness(material, f),
+                                material->skin.poisson, rim, d->stiffness[f]);
+        if (material->held && material->held[f]) {
+            hold_directors(shell, material, f);
+        }
+    }
+    return ruga_directors_link(d);
+}
+
 static ruga_status set_rest(ruga_shell* shell, const ruga_mesh* mesh, const ruga_connectivity* connectivity,
                             const ruga_shell_material* material) {
     double* area = NULL;
@@ -213,6 +280,9 @@ static ruga_status set_rest(ruga_shell* shell, const ruga_mesh* mesh, const ruga
     ruga_status status = set_triangles(shell, mesh, material, area);
     if (status == RUGA_OK) {
         set_hinges(shell, mesh, connectivity, material, area);
+    }
+    if (status == RUGA_OK && shell->has_directors) {
+        status = set_directors(shell, connectivity, material, area);
     }
     ruga_release(area);
     return status;
@@ -223,12 +293,21 @@ static ruga_status set_rest(ruga_shell* shell, const ruga_mesh* mesh, const ruga
 static ruga_status set_pattern(ruga_shell* shell, const ruga_connectivity* connectivity) {
     int(*pairs)[2] = NULL;
     int64_t count = connectivity->edge_count + (int64_t)shell->hinge_count;
-    RUGA_TRY(RUGA_NEW(pairs, count));
+    RUGA_TRY(RUGA_NEW(pairs, count + (shell->has_directors ? 3 * (int64_t)shell->triangle_count : 0)));
     for (int e = 0; e < connectivity->edge_count; e++) {
         memcpy(pairs[e], connectivity->edge[e], sizeof pairs[e]);
     }
     for (int h = 0; h < shell->hinge_count; h++) {
         memcpy(pairs[connectivity->edge_count + h], shell->hinge[h] + 2, sizeof pairs[0]);
+    }
+    // Across a patch.
+    for (int k = 0; k < 3 * shell->triangle_count && shell->has_directors; k++) {
+        const int* across = shell->patch[k / 3] + 3;
+        int a = across[k % 3], b = across[(k + 1) % 3];
+        if (a >= 0 && b >= 0) {
+            pairs[count][0] = a;
+            pairs[count++][1] = b;
+        }
     }
     ruga_status status =
         ruga_sparse_from_pairs(shell->vertex_count, 3, count, (const int(*)[2])pairs, &shell->pattern);
@@ -280,7 +359,7 @@ static ruga_status block_gather_create(const ruga_shell* shell, int element_coun
             int row = corner[i / size], column = corner[i % size];
             int* block = &target[(size_t)k * (size_t)pairs + (size_t)i];
             *block = -1;
-            if (row >= column) {
+            if (row >= column && column >= 0) {
                 int position = ruga_sparse_find(&shell->pattern, 3 * row, 3 * column);
                 RUGA_ASSERT(position >= 0);
                 *block = shell->block_start[column] + (position - shell->pattern.start[3 * column]) / 3;
@@ -298,7 +377,9 @@ static ruga_status set_gathers(ruga_shell* shell) {
     RUGA_TRY(gather_create(shell->vertex_count, 3 * triangles, shell->triangle[0], &shell->vertex_triangle));
     RUGA_TRY(gather_create(shell->vertex_count, 4 * hinges, shell->hinge[0], &shell->vertex_hinge));
     RUGA_TRY(block_gather_create(shell, triangles, 3, shell->triangle[0], &shell->block_triangle));
-    return block_gather_create(shell, hinges, 4, shell->hinge[0], &shell->block_hinge);
+    return shell->has_directors
+               ? block_gather_create(shell, triangles, PATCH, shell->patch[0], &shell->block_patch)
+               : block_gather_create(shell, hinges, 4, shell->hinge[0], &shell->block_hinge);
 }
 
 // ---- Creation
@@ -336,7 +417,8 @@ ruga_status ruga_shell_create(const ruga_mesh* mesh, const ruga_connectivity* co
     RUGA_ASSERT(connectivity->triangle_count == mesh->triangle_count);
     RUGA_TRY(check_skin(material));
     int hinges = count_hinges(connectivity);
-    if (mesh->triangle_count > INT_MAX / 9 || hinges > INT_MAX / 16) {
+    bool made_of_patches = material->skin.bending == RUGA_BENDING_KIRCHHOFF_LOVE;
+    if (mesh->triangle_count > INT_MAX / (made_of_patches ? PATCH * PATCH : 9) || hinges > INT_MAX / 16) {
         return ruga_fail(RUGA_BAD_MESH,
                          "the mesh has %d faces, too many for 32-bit indices: use a coarser mesh",
                          mesh->triangle_count);
@@ -347,6 +429,7 @@ ruga_status ruga_shell_create(const ruga_mesh* mesh, const ruga_connectivity* co
     made->vertex_count = mesh->vertex_count;
     made->triangle_count = mesh->triangle_count;
     made->hinge_count = hinges;
+    made->has_directors = made_of_patches;
     RUGA_TRY_DONE(allocate(made));
     RUGA_TRY_DONE(set_rest(made, mesh, connectivity, material));
     RUGA_TRY_DONE(set_pattern(made, connectivity));
@@ -380,6 +463,11 @@ void ruga_shell_destroy(ruga_shell** shell) {
     gather_clear(&s->vertex_hinge);
     gather_clear(&s->block_triangle);
     gather_clear(&s->block_hinge);
+    gather_clear(&s->block_patch);
+    ruga_directors_clear(&s->directors);
+    ruga_release(s->patch);
+    ruga_release(s->hinge_angle);
+    ruga_release(s->patch_gradient);
     ruga_release(s->triangle_gradient);
     ruga_release(s->triangle_block);
     ruga_release(s->hinge_gradient);
@@ -391,6 +479,10 @@ void ruga_shell_destroy(ruga_shell** shell) {
 
 const ruga_sparse* ruga_shell_pattern(const ruga_shell* shell) {
     return &shell->pattern;
+}
+
+const ruga_directors* ruga_shell_directors(const ruga_shell* shell) {
+    return shell->has_directors ? &shell->directors : NULL;
 }
 
 void ruga_shell_vertex_mass(const ruga_shell* shell, double* mass) {
@@ -422,6 +514,25 @@ static void triangle_energies(int begin, int end, int chunk, void* context) {
     shell->partial[chunk][1] = force_square;
 }
 
+static void hinge_angles(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    const ruga_shell* shell = p->shell;
+    for (int h = begin; h < end; h++) {
+        const double* x[4];
+        hinge_corners(shell->hinge[h], p->x, x);
+        shell->hinge_angle[h] =
+            ruga_angle_difference(ruga_hinge_angle(x, shell->hinge_gradient[h]), shell->hinge_rest[h].angle);
+    }
+}
+
+static void settle_directors(pass* p) {
+    // The directors' work vectors are scratch of the shell, as the rest.
+    ruga_directors directors = p->shell->directors;
+    ruga_parallel_for(p->shell->hinge_count, CHUNK, hinge_angles, p);
+    ruga_directors_settle(&directors, p->shell->hinge_angle, p->shell->hinge_moment);
+}
+
 static void hinge_energies(int begin, int end, int chunk, void* context) {
     const pass* p = context;
     const ruga_shell* shell = p->shell;
@@ -431,8 +542,10 @@ static void hinge_energies(int begin, int end, int chunk, void* context) {
         double(*g)[3] = shell->hinge_gradient[h];
         const hinge_rest* rest = &shell->hinge_rest[h];
         hinge_corners(shell->hinge[h], p->x, x);
-        double angle = ruga_angle_difference(ruga_hinge_angle(x, g), rest->angle);
-        double moment = rest->stiffness * angle;
+        bool known = shell->has_directors; // angle and moment, by settle_directors
+        double angle =
+            known ? shell->hinge_angle[h] : ruga_angle_difference(ruga_hinge_angle(x, g), rest->angle);
+        double moment = known ? shell->hinge_moment[h] : rest->stiffness * angle;
         shell->hinge_moment[h] = moment;
         energy += 0.5 * moment * angle;
         force_square +=
@@ -516,6 +629,41 @@ static void add_hinge_block(double stiffness, const double row[3], const double 
     }
 }
 
+// Gradients of the angles of a triangle's hinges, times its parts of them, by the vertices of its patch.
+static void set_patch_gradient(const ruga_shell* shell, int f) {
+    double(*to)[PATCH][3] = shell->patch_gradient[f];
+    memset(to, 0, sizeof shell->patch_gradient[f]);
+    for (int i = 0; i < 3; i++) {
+        int h = shell->triangle_hinge[f][i];
+        bool first = h >= 0 && shell->directors.hinge_triangle[h][0] == f;
+        double weight = h >= 0 ? shell->directors.weight[h][!first] : 0;
+        for (int c = 0; c < 4 && h >= 0; c++) {
+            int k = c < 2 ? (shell->hinge[h][c] == shell->triangle[f][i] ? i : (i + 1) % 3)
+                          : ((c == 2) == first ? (i + 2) % 3 : 3 + i);
+            ruga_add_scaled(weight, shell->hinge_gradient[h][c], to[i][k]);
+        }
+    }
+}
+
+static void patch_gradients(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    for (int f = begin; f < end; f++) {
+        set_patch_gradient(p->shell, f);
+    }
+}
+
+// K of directors.c between two rows of gradients.
+static void add_patch_block(const ruga_shell* shell, int f, int row, int column, double sum[9]) {
+    const double(*g)[PATCH][3] = (const double(*)[PATCH][3])shell->patch_gradient[f];
+    for (int i = 0; i < 9; i++) {
+        double k = shell->directors.stiffness[f][i / 3][i % 3];
+        if (k != 0) {
+            add_hinge_block(k, g[i / 3][row], g[i % 3][column], sum);
+        }
+    }
+}
+
 static void gather_hessian(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const pass* p = context;
@@ -528,7 +676,14 @@ static void gather_hessian(int begin, int end, int chunk, void* context) {
                 int item = triangles->item[k];
                 add_triangle_block(shell->triangle_block[item / 9], item % 9, sum);
             }
-            for (int k = hinges->start[b]; k < hinges->start[b + 1]; k++) {
+            const gather* patches = &shell->block_patch;
+            for (int k = shell->has_directors ? patches->start[b] : 0;
+                 shell->has_directors && k < patches->start[b + 1]; k++) {
+                int f = patches->item[k] / (PATCH * PATCH), pair = patches->item[k] % (PATCH * PATCH);
+                add_patch_block(shell, f, pair / PATCH, pair % PATCH, sum);
+            }
+            for (int k = shell->has_directors ? 0 : hinges->start[b];
+                 !shell->has_directors && k < hinges->start[b + 1]; k++) {
                 int h = hinges->item[k] / 16, pair = hinges->item[k] % 16;
                 add_hinge_block(shell->hinge_rest[h].stiffness, shell->hinge_gradient[h][pair / 4],
                                 shell->hinge_gradient[h][pair % 4], sum);
@@ -553,6 +708,9 @@ ruga_status ruga_shell_energy(const ruga_shell* shell, const double* x, double c
     ruga_parallel_for(shell->triangle_count, CHUNK, triangle_energies, &p);
     sum.membrane = total(shell, shell->triangle_count, 0);
     sum.force_square = total(shell, shell->triangle_count, 1);
+    if (shell->has_directors) {
+        settle_directors(&p);
+    }
     ruga_parallel_for(shell->hinge_count, CHUNK, hinge_energies, &p);
     sum.bending = total(shell, shell->hinge_count, 0);
     sum.force_square += total(shell, shell->hinge_count, 1);
@@ -564,7 +722,31 @@ ruga_status ruga_shell_energy(const ruga_shell* shell, const double* x, double c
     }
     if (hessian) {
         ruga_parallel_for(shell->triangle_count, CHUNK, triangle_hessians, &p);
+        if (shell->has_directors) {
+            ruga_parallel_for(shell->triangle_count, CHUNK, patch_gradients, &p);
+        }
         ruga_parallel_for(shell->vertex_count, CHUNK, gather_hessian, &p);
     }
     return RUGA_OK;
+}
+
+void ruga_shell_coupling(const ruga_shell* shell, double (*coupling)[3]) {
+    ruga_directors_coupling(&shell->directors, shell->hinge_gradient, coupling);
+}
+
+void ruga_shell_relax(const ruga_shell* shell, const double (*coupling)[3], const double* v, double* y) {
+    ruga_directors directors = shell->directors;
+    double* f = directors.rotation;
+    memset(f, 0, (size_t)shell->hinge_count * sizeof *f);
+    for (int i = 0; i < shell->vertex_count; i++) {
+        for (int k = directors.start[i]; k < directors.start[i + 1]; k++) {
+            f[directors.edge[k]] += ruga_dot(coupling[k], v + 3 * (size_t)i);
+        }
+    }
+    ruga_directors_solve(&directors, f, f);
+    for (int i = 0; i < shell->vertex_count; i++) {
+        for (int k = directors.start[i]; k < directors.start[i + 1]; k++) {
+            ruga_add_scaled(-f[directors.edge[k]], coupling[k], y + 3 * (size_t)i);
+        }
+    }
 }

@@ -347,15 +347,13 @@ static ruga_status assemble(ruga_interior* in, const double* q) {
 static ruga_status skin_response(ruga_interior* in, const double* dq, double* move, double* image) {
     ruga_skin* skin = in->skin;
     double *u = surface_vector(in, BU), *right = skin->right;
-    ruga_sparse k = *ruga_shell_pattern(skin->shell);
-    k.value = skin->stiffness;
     ruga_lattice_embed(&in->model->lattice, dq, u);
     for (int i = 0; i < skin->n; i++) {
         move[i] = skin_only(in, i) ? 0 : u[i];
     }
     if (in->model->solves_skin) {
         multiply_foundation(in, u, right);
-        ruga_sparse_multiply_symmetric(&k, move, image);
+        ruga_skin_apply(skin, move, image);
         for (int i = 0; i < skin->n; i++) {
             right[i] = in->model->skin_handle[i] >= 0 ? 0 : right[i] - image[i];
             u[i] -= move[i];
@@ -369,7 +367,7 @@ static ruga_status skin_response(ruga_interior* in, const double* dq, double* mo
     }
     // dt = (K - W) dx; where the skin alone is held, -(W (dx - B dq) + H^T dl).
     multiply_foundation(in, move, right);
-    ruga_sparse_multiply_symmetric(&k, move, image);
+    ruga_skin_apply(skin, move, image);
     for (int i = 0; i < skin->n; i++) {
         image[i] -= right[i];
     }
@@ -580,9 +578,10 @@ ruga_status ruga_interior_paper_step(ruga_interior* in, double tolerance, double
     *result = (ruga_interior_result){0};
     RUGA_TRY(ruga_skin_energy(skin, x, &result->skin.terms, gradient));
     RUGA_TRY(surface_force(in, x, embedded, gradient, t));
-    ruga_sparse k = *ruga_shell_pattern(skin->shell);
-    k.value = skin->stiffness;
     RUGA_TRY(ruga_shell_energy(skin->shell, x, 0, &(ruga_shell_energies){0}, NULL, skin->stiffness));
+    if (skin->coupling) {
+        ruga_shell_coupling(skin->shell, skin->coupling);
+    }
     for (int it = 0; it < MAX_NEWTON; it++, result->iterations++) {
         RUGA_TRY(factor_preconditioner(in, q, x));
         result->factorizations++;
@@ -591,7 +590,7 @@ ruga_status ruga_interior_paper_step(ruga_interior* in, double tolerance, double
             z[i] = q[i] - in->previous[i];
         }
         ruga_lattice_embed(&in->model->lattice, z, u);
-        ruga_sparse_multiply_symmetric(&k, u, image);
+        ruga_skin_apply(skin, u, image);
         for (int i = 0; i < skin->n; i++) {
             image[i] += t[i];
         }

@@ -36,13 +36,13 @@ static ruga_status direction_minres(ruga_skin* skin, const double* x, const doub
         return RUGA_OK;
     }
     RUGA_TRY(ruga_skin_assemble(skin, x, 0));
-    memset(side, 0, (size_t)(skin->n + skin->m) * sizeof *side);
-    memset(solution, 0, (size_t)(skin->n + skin->m) * sizeof *solution);
+    memset(side, 0, (size_t)skin->size * sizeof *side);
+    memset(solution, 0, (size_t)skin->size * sizeof *solution);
     for (int i = 0; i < skin->n; i++) {
         side[i] = -projected[i];
     }
     ruga_minres_report report;
-    RUGA_TRY(ruga_belos_minres(skin->n + skin->m, apply_system, apply_preconditioner, skin, side, solution, 1e-4,
+    RUGA_TRY(ruga_belos_minres(skin->size, apply_system, apply_preconditioner, skin, side, solution, 1e-4,
                                MINRES_MAX, &report));
     skin->work.linear_iterations += report.iterations;
     memcpy(d, solution, (size_t)skin->n * sizeof *d);

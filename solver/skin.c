@@ -104,17 +104,38 @@ void ruga_skin_clear_void_rows(const ruga_skin* skin, double* y) {
     }
 }
 
+static int count_coupling(const ruga_skin* skin) {
+    const ruga_directors* d = ruga_shell_directors(skin->shell);
+    return d ? d->start[skin->n / 3] : 0;
+}
+
+// The directors' columns, and what they hold for good; returns where they end.
+static int fill_director_columns(ruga_skin* skin, int out) {
+    const ruga_directors* d = ruga_shell_directors(skin->shell);
+    int first = skin->n + skin->m;
+    for (int e = 0; e < skin->size - first; e++) {
+        skin->kkt.start[first + e] = out;
+        for (int p = d->matrix.start[e]; p < d->matrix.start[e + 1]; p++) {
+            skin->kkt.index[out] = first + d->matrix.index[p];
+            skin->kkt.value[out++] = d->matrix.value[p];
+        }
+    }
+    return out;
+}
+
 static ruga_status create_kkt(ruga_skin* skin, const transpose* t) {
     const ruga_sparse* k = ruga_shell_pattern(skin->shell);
+    const ruga_directors* d = ruga_shell_directors(skin->shell);
     int n = skin->n, m = skin->m;
-    int64_t entries = (int64_t)k->start[n] + 3 * (int64_t)t->start[n / 3] + m;
+    int64_t entries = (int64_t)k->start[n] + 3 * (int64_t)t->start[n / 3] + m + 3 * (int64_t)count_coupling(skin) +
+                      (d ? d->matrix.start[d->hinge_count] : 0);
     if (entries > INT32_MAX) {
         return ruga_fail(RUGA_NO_MEMORY, "the skin's system has %lld entries, more than 2^31: use a coarser mesh",
                          (long long)entries);
     }
     ruga_sparse* kkt = &skin->kkt;
-    kkt->rows = kkt->columns = n + m;
-    RUGA_TRY(RUGA_NEW(kkt->start, n + m + 1));
+    kkt->rows = kkt->columns = skin->size;
+    RUGA_TRY(RUGA_NEW(kkt->start, skin->size + 1));
     RUGA_TRY(RUGA_NEW(kkt->index, entries));
     RUGA_TRY(RUGA_NEW_ZERO(kkt->value, entries));
     RUGA_TRY(RUGA_NEW(skin->column_shift, n));
@@ -131,26 +152,29 @@ static ruga_status create_kkt(ruga_skin* skin, const transpose* t) {
             bool out_of_play = held(skin, j) || skin->row_void[3 * t->row[p] + axis];
             kkt->value[out++] = out_of_play ? 0 : t->weight[p];
         }
+        for (int p = d ? d->start[v] : 0; d && p < d->start[v + 1]; p++) {
+            kkt->index[out++] = n + m + d->edge[p];
+        }
     }
     for (int r = 0; r < m; r++) {
         kkt->start[n + r] = out;
         kkt->index[out] = n + r;
         kkt->value[out++] = skin->row_void[r] ? -1 : 0;
     }
-    kkt->start[n + m] = out;
+    kkt->start[skin->size] = fill_director_columns(skin, out);
     return RUGA_OK;
 }
 
 static ruga_status create_factor(ruga_skin* skin) {
     ruga_status status = RUGA_OK;
-    int nodes = (skin->n + skin->m) / 3, *start = NULL;
+    int threes = (skin->n + skin->m) / 3, nodes = threes + skin->size - 3 * threes, *start = NULL;
     bool* last = NULL;
     RUGA_TRY_DONE(RUGA_NEW(start, nodes + 1));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(last, nodes));
     for (int i = 0; i <= nodes; i++) {
-        start[i] = 3 * i;
+        start[i] = i < threes ? 3 * i : i + 2 * threes;
     }
-    for (int i = skin->n / 3; i < nodes; i++) {
+    for (int i = skin->n / 3; i < threes; i++) {
         last[i] = true;
     }
     RUGA_TRY_DONE(ruga_factor_create(skin->m ? RUGA_FACTOR_LDL : RUGA_FACTOR_CHOLESKY, &skin->kkt, nodes, start,
@@ -240,15 +264,38 @@ static ruga_status create_vectors(ruga_skin* skin) {
     RUGA_TRY(RUGA_NEW_ZERO(skin->stiffness, ruga_shell_pattern(skin->shell)->start[n]));
     RUGA_TRY(RUGA_NEW_ZERO(skin->target, n));
     RUGA_TRY(RUGA_NEW_ZERO(skin->displacement, n));
-    RUGA_TRY(RUGA_NEW_ZERO(skin->right, n + m));
-    RUGA_TRY(RUGA_NEW_ZERO(skin->left, n + m));
+    RUGA_TRY(RUGA_NEW_ZERO(skin->right, skin->size));
+    RUGA_TRY(RUGA_NEW_ZERO(skin->left, skin->size));
+    if (ruga_shell_directors(skin->shell)) {
+        RUGA_TRY(RUGA_NEW_ZERO(skin->coupling, count_coupling(skin)));
+    }
     RUGA_TRY(RUGA_NEW_ZERO(skin->multiplier, m));
     RUGA_TRY(RUGA_NEW_ZERO(skin->trial, n));
     RUGA_TRY(RUGA_NEW_ZERO(skin->trial_gradient, n));
-    RUGA_TRY(RUGA_NEW(skin->memory, (size_t)RUGA_SKIN_WORK_VECTORS * (size_t)(n + m)));
+    RUGA_TRY(RUGA_NEW(skin->memory, (size_t)RUGA_SKIN_WORK_VECTORS * (size_t)skin->size));
     RUGA_TRY(RUGA_NEW_ZERO(skin->mass, n / 3));
     ruga_shell_vertex_mass(skin->shell, skin->mass);
     return RUGA_OK;
+}
+
+static ruga_status create_shell(ruga_skin* skin) {
+    const ruga_model* model = skin->model;
+    bool* held_triangle = NULL;
+    RUGA_TRY(RUGA_NEW(held_triangle, model->mesh.triangle_count));
+    for (int f = 0; f < model->mesh.triangle_count; f++) {
+        held_triangle[f] = true;
+        for (int i = 0; i < 9; i++) {
+            held_triangle[f] = held_triangle[f] && held(skin, 3 * model->mesh.triangle[3 * f + i / 3] + i % 3);
+        }
+    }
+    ruga_shell_material material = {.skin = model->skin,
+                                    .thickness = model->variation.triangle_thickness,
+                                    .young = model->variation.triangle_young,
+                                    .growth = model->variation.triangle_growth,
+                                    .held = held_triangle};
+    ruga_status status = ruga_shell_create(&model->mesh, &model->connectivity, &material, &skin->shell);
+    ruga_release(held_triangle);
+    return status;
 }
 
 ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** out) {
@@ -260,10 +307,9 @@ ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** out) {
     skin->model = model;
     skin->n = 3 * model->mesh.vertex_count;
     skin->m = 3 * model->clusters.count;
-    const ruga_variation* local = &model->variation;
-    ruga_shell_material material = {model->skin, local->triangle_thickness, local->triangle_young,
-                                    local->triangle_growth};
-    RUGA_TRY_DONE(ruga_shell_create(&model->mesh, &model->connectivity, &material, &skin->shell));
+    RUGA_TRY_DONE(create_shell(skin));
+    const ruga_directors* directors = ruga_shell_directors(skin->shell);
+    skin->size = skin->n + skin->m + (directors ? directors->hinge_count : 0);
     RUGA_TRY_DONE(transpose_clusters(&model->clusters, skin->n / 3, &t));
     RUGA_TRY_DONE(create_vectors(skin));
     if (model->solves_skin) {
@@ -299,7 +345,7 @@ void ruga_skin_destroy(ruga_skin** skin_pointer) {
     void* const owned[] = {skin->row_void,     skin->column_shift, skin->foundation_slot, skin->stiffness,
                            skin->target,       skin->displacement,    skin->right,
                            skin->left,         skin->multiplier,      skin->trial,
-                           skin->trial_gradient, skin->memory,        skin->mass};
+                           skin->trial_gradient, skin->memory,        skin->mass,           skin->coupling};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
         ruga_release(owned[i]);
     }
@@ -365,6 +411,7 @@ ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* 
 
 static void fill_kkt(ruga_skin* skin, double shift) {
     const ruga_sparse* k = ruga_shell_pattern(skin->shell);
+    const ruga_directors* d = ruga_shell_directors(skin->shell);
     const bool any_held = skin->model->any_skin_held;
     double mean = 0;
     for (int j = 0; j < skin->n; j++) {
@@ -382,6 +429,11 @@ static void fill_kkt(ruga_skin* skin, double shift) {
         const double* source = skin->stiffness + k->start[j];
         memcpy(column, source, (size_t)count * sizeof *column);
         column[0] += shift * skin->model->vertex_area[j / 3];
+        int edges = d ? d->start[j / 3 + 1] - d->start[j / 3] : 0;
+        double* coupled = skin->kkt.value + skin->kkt.start[j + 1] - edges;
+        for (int p = 0; p < edges; p++) {
+            coupled[p] = held(skin, j) ? 0 : skin->coupling[d->start[j / 3] + p][j % 3];
+        }
         if (!any_held) {
             continue;
         }
@@ -412,6 +464,9 @@ ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
     ruga_shell_energies shell;
     double external = 0;
     RUGA_TRY(ruga_shell_energy(skin->shell, x, clamp, &shell, NULL, skin->stiffness));
+    if (skin->coupling) {
+        ruga_shell_coupling(skin->shell, skin->coupling);
+    }
     if (model->foundation.vertex_count) {
         ruga_foundation_add_hessian(&model->foundation, skin->foundation_slot, skin->stiffness);
     }
@@ -489,10 +544,17 @@ ruga_status ruga_skin_solve(ruga_skin* skin, const double* r, double* d) {
     return RUGA_OK;
 }
 
-void ruga_skin_multiply(const ruga_skin* skin, const double* v, double* y) {
+void ruga_skin_apply(const ruga_skin* skin, const double* v, double* y) {
     ruga_sparse k = *ruga_shell_pattern(skin->shell);
     k.value = skin->stiffness;
     ruga_sparse_multiply_symmetric(&k, v, y);
+    if (skin->coupling) {
+        ruga_shell_relax(skin->shell, (const double(*)[3])skin->coupling, v, y);
+    }
+}
+
+void ruga_skin_multiply(const ruga_skin* skin, const double* v, double* y) {
+    ruga_skin_apply(skin, v, y);
     for (int i = 0; i < skin->n && skin->model->any_skin_held; i++) {
         y[i] = held(skin, i) ? 0 : y[i];
     }

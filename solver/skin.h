@@ -5,6 +5,7 @@
 //     minimise  E(x) = shell + foundation + loads + weight (+ proximal term)   over x
 //     subject to  H x = H B q   and   held components fixed.
 // skin.c evaluates, factorises its KKT matrix [K H^T; H 0] and projects; ruga_skin_minimize calls a method.
+// The rotations of directors (shell/directors.h) are only in the matrix, [K H^T C^T; H 0 0; C 0 M].
 #ifndef RUGA_SOLVER_SKIN_H
 #define RUGA_SOLVER_SKIN_H
 
@@ -27,13 +28,13 @@ typedef struct ruga_skin_work {
 typedef struct ruga_skin {
     const ruga_model* model;
     ruga_shell* shell;
-    int n; // 3 V
-    int m; // 3 clusters
+    int n, m, size; // 3 V, 3 clusters, n + m + directors
 
-    ruga_sparse kkt;        // lower triangle of [K H^T; H 0], or of K
+    ruga_sparse kkt;        // lower triangle of the matrix, of `size`
     int* column_shift;      // [n] from a column of the shell's pattern to the same one of kkt
     int* foundation_slot;
     double* stiffness;      // K as last assembled, without shift, in the shell's pattern
+    double (*coupling)[3];  // C of the same state, NULL without directors
     ruga_factor* factor;
     ruga_factor_info info;
     bool* row_void;         // [m] rows of H that are left out: what they average is held
@@ -50,11 +51,11 @@ typedef struct ruga_skin {
     const double* anchor;   // [n] of the proximal term
 
     double* displacement;   // [n] work: x - B q
-    double *right, *left;   // [n + m] work: one system's sides
+    double *right, *left;   // [size] work: one system's sides; the directors' part of right stays 0
     double* multiplier;     // [m] of the last projection
     double* trial;          // [n] work of line searches
     double* trial_gradient; // [n]
-    double* memory;         // L-BFGS pairs and more, [work_vectors][n + m]
+    double* memory;         // L-BFGS pairs and more, [work_vectors][size]
     double* mass;           // [V] kg
     ruga_skin_work work;
 
@@ -84,7 +85,7 @@ ruga_status ruga_skin_shift_until_right(ruga_skin* skin);
 
 // d = the first n of [K H^T; H 0]^-1 [r; 0], with held components of r taken as 0: H d = 0.
 ruga_status ruga_skin_solve(ruga_skin* skin, const double* r, double* d);
-// The full system: sides [n + m].
+// The full system: sides [size], right with 0 for the directors.
 ruga_status ruga_skin_solve_system(ruga_skin* skin, const double* right, double* left);
 
 // out = gradient without its held components and without its part in the range of H^T; sets multiplier (so
@@ -97,7 +98,8 @@ ruga_status ruga_skin_restore(ruga_skin* skin, double* x);
 // |H x - H B q| / |H B q|
 double ruga_skin_constraint_residual(ruga_skin* skin, const double* x);
 
-// y = K v with the stiffness of the last factor, held components zeroed; v is zero there.
+// y = (K - C^T M^-1 C) v as last assembled. multiply: held components zeroed; v is zero there.
+void ruga_skin_apply(const ruga_skin* skin, const double* v, double* y);
 void ruga_skin_multiply(const ruga_skin* skin, const double* v, double* y);
 
 typedef struct ruga_skin_result {
@@ -137,14 +139,12 @@ ruga_status ruga_armijo_search(ruga_skin* skin, const double* d, double* x, ruga
 ruga_status ruga_negative_curvature_step(ruga_skin* skin, double* x, ruga_skin_terms* terms, double* gradient,
                                          bool* moved);
 
-// Largest vertex displacement in a vector [n].
-double ruga_largest_move(int n, const double* d);
+double ruga_largest_move(int n, const double* d); // of a vertex, in a vector [n]
 double ruga_dot_product(int n, const double* a, const double* b);
-
 enum { RUGA_SKIN_WORK_VECTORS = 24 };
-// Work vector i of length n + m.
+// Work vector i of length `size`.
 static inline double* ruga_skin_vector(ruga_skin* skin, int i) {
-    return skin->memory + (size_t)i * (size_t)(skin->n + skin->m);
+    return skin->memory + (size_t)i * (size_t)skin->size;
 }
 
 #endif

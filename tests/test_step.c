@@ -474,6 +474,29 @@ static void a_sheet_without_interior_sags_under_its_weight(void** state) {
     scene_free(&s);
 }
 
+// Both ways, a skin of directors comes to the same rest as one of hinges where nothing bends much, and converges.
+static void a_skin_of_directors_is_solved_with_its_interior(void** state) {
+    (void)state;
+    double middle[2] = {0, 0};
+    for (int kind = 0; kind < 2; kind++) {
+        small_scene s;
+        scene_bar(&s, -3e-3, 1, 8e-3);
+        s.def.skin.bending = kind ? RUGA_BENDING_KIRCHHOFF_LOVE : RUGA_BENDING_HINGE;
+        scene_build(&s);
+        ruga_report report;
+        assert_ok(ruga_state_step(s.model, s.state, &report));
+        assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+        assert_true(report.residual_coupled <= s.def.solver.tolerance);
+        for (int v = 0; v < s.mesh.vertex_count; v++) {
+            middle[kind] = fmax(middle[kind], s.state->x[3 * v + 2]);
+        }
+        print_message("bending %d: top %.5g m, bending energy %.4g J, %d iterations\n", kind, middle[kind],
+                      report.energy_bending, report.newton_iterations);
+        scene_free(&s);
+    }
+    assert_near(middle[1], middle[0], 2e-4);
+}
+
 // With an argument: only the tests whose name matches it.
 int main(int argc, char** argv) {
     const struct CMUnitTest tests[] = {
@@ -490,6 +513,7 @@ int main(int argc, char** argv) {
         cmocka_unit_test(the_published_method_tells_an_honest_outcome),
         cmocka_unit_test(a_body_recovers_from_inversion_and_collapse),
         cmocka_unit_test(a_sheet_without_interior_sags_under_its_weight),
+        cmocka_unit_test(a_skin_of_directors_is_solved_with_its_interior),
     };
     cmocka_set_test_filter(argc > 1 ? argv[1] : NULL);
     return cmocka_run_group_tests_name("step", tests, NULL, check_no_leak);

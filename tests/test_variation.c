@@ -54,8 +54,10 @@ static void tear_down(fixture* f) {
 }
 
 static void make_shell(fixture* f, bool thickness, bool young, bool growth) {
-    ruga_shell_material material = {plain_skin, thickness ? f->thickness : NULL, young ? f->young : NULL,
-                                    growth ? f->growth : NULL};
+    ruga_shell_material material = {.skin = plain_skin,
+                                    .thickness = thickness ? f->thickness : NULL,
+                                    .young = young ? f->young : NULL,
+                                    .growth = growth ? f->growth : NULL};
     ruga_shell_destroy(&f->shell);
     assert_ok(ruga_shell_create(&f->mesh, &f->connectivity, &material, &f->shell));
 }

@@ -14,6 +14,7 @@ const ruga_validation_case* const ruga_validation_cases[] = {
     &ruga_validate_zigzag,
     &ruga_validate_flower,
     &ruga_validate_vary,
+    &ruga_validate_shell,
     &ruga_validate_interior,
     NULL,
 };

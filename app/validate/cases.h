@@ -16,6 +16,7 @@ extern const ruga_validation_case ruga_validate_bar;
 extern const ruga_validation_case ruga_validate_zigzag;
 extern const ruga_validation_case ruga_validate_flower;
 extern const ruga_validation_case ruga_validate_vary;
+extern const ruga_validation_case ruga_validate_shell;
 extern const ruga_validation_case ruga_validate_interior;
 
 #endif

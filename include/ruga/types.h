@@ -85,6 +85,7 @@ typedef struct ruga_keyframe_def {
 } ruga_keyframe_def;
 
 typedef enum ruga_membrane { RUGA_MEMBRANE_BARAFF_WITKIN, RUGA_MEMBRANE_STVK } ruga_membrane;
+typedef enum ruga_bending { RUGA_BENDING_HINGE, RUGA_BENDING_KIRCHHOFF_LOVE } ruga_bending;
 typedef enum ruga_skin_motion { RUGA_SKIN_STATIC, RUGA_SKIN_DAMPED } ruga_skin_motion;
 typedef enum ruga_interior_motion {
     RUGA_INTERIOR_DYNAMIC,
@@ -117,6 +118,7 @@ typedef struct ruga_skin_def {
     double poisson;   // in (-1, 0.5)
     double density;   // kg/m^3, >= 0
     ruga_membrane membrane;
+    ruga_bending bending;
     double growth[2]; // rest lengths along and across the skin's first direction are multiplied by these
     ruga_skin_motion motion;
     double relaxation; // s, for damped motion
