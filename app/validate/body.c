@@ -63,8 +63,9 @@ ruga_region ruga_plane_region(double x, double y, double z, double nx, double ny
 
 ruga_status ruga_body_picture(ruga_body* body, double azimuth, double elevation, double scale, const char* path) {
     ruga_render_def def = ruga_default_render_def();
-    def.width = 1000;
-    def.height = 700;
+    def.width = 720;
+    def.height = 504;
+    def.samples = 4;
     def.azimuth = azimuth;
     def.elevation = elevation;
     if (scale > 0) {

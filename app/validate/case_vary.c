@@ -296,8 +296,8 @@ static ruga_status draw(ruga_validation* v, const sheet* s, const char* suffix, 
     for (int i = 0; i < s->mesh.vertex_count; i++) {
         most = fmax(most, fabs(w[i]));
     }
-    def.width = 1600;
-    def.height = 560;
+    def.width = 1000;
+    def.height = 350;
     def.azimuth = -RUGA_PI / 2;
     def.elevation = 50 * RUGA_PI / 180;
     def.scalar = w;

@@ -39,7 +39,11 @@ static void add_line(ruga_validation* v, const char* quantity, const char* kind,
     (void)json_array_append_new(v->lines, line);
     v->failed += judged && !good;
     if (!v->settings->quiet) {
-        (void)fprintf(stderr, "  %-56s %12.5g %12.5g  %s\n", quantity, ours, reference, verdict);
+        char against[32] = "";
+        if (isfinite(reference)) {
+            (void)snprintf(against, sizeof against, "%.5g", reference);
+        }
+        (void)fprintf(stderr, "  %-72s %12.5g %12s  %s\n", quantity, ours, against, verdict);
     }
 }
 
