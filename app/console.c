@@ -45,6 +45,18 @@ void ruga_warn_of_scene(const ruga_arguments* arguments, const ruga_scene* scene
     }
 }
 
+void ruga_warn_of_handles(const ruga_arguments* arguments, const ruga_model* model) {
+    const double few = 3;
+    int pair[2];
+    double cells = ruga_rows_nearest(&model->rows, &model->lattice, model->handles, pair);
+    if (cells < few) {
+        ruga_warn(arguments,
+                  "handles[%d] and handles[%d] move differently within %.2g cells of one another, where the lattice has no "
+                  "room to follow both: slow, and stiff; lattice.cells: %d or more would give it",
+                  pair[0], pair[1], cells, (int)ceil(model->lattice_def.cells * few / fmax(cells, 1)));
+    }
+}
+
 void ruga_complain(const char* format, ...) {
     va_list list;
     va_start(list, format);

@@ -8,6 +8,7 @@
 #include "app/command.h"
 #include "io/scene.h"
 #include "mesh/mesh.h"
+#include "solver/model.h"
 
 #include <jansson.h>
 
@@ -18,6 +19,8 @@ void ruga_warn(const ruga_arguments* arguments, const char* format, ...)
     __attribute__((format(printf, 2, 3)));
 // What reading the scene had to say.
 void ruga_warn_of_scene(const ruga_arguments* arguments, const ruga_scene* scene);
+// Where handles that move apart lie so close that the lattice cannot follow both without great effort.
+void ruga_warn_of_handles(const ruga_arguments* arguments, const ruga_model* model);
 // Always: "ruga: ..." to stderr.
 void ruga_complain(const char* format, ...) __attribute__((format(printf, 1, 2)));
 

@@ -201,6 +201,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     } else {
         say_all(arguments, &f);
     }
+    ruga_warn_of_handles(arguments, f.model);
     status = judge_edges(arguments, &f);
 done:
     ruga_model_destroy(&model);

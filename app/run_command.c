@@ -194,6 +194,7 @@ static ruga_status simulate(job* j) {
     int frames = j->scene.def.frames;
     RUGA_TRY(ruga_model_create(&j->scene.def, &j->model));
     warn_of_coarse_mesh(j);
+    ruga_warn_of_handles(j->arguments, j->model);
     RUGA_TRY(ruga_state_create(j->model, &j->state));
     RUGA_TRY(open_result(j));
     if (!j->continues) {

@@ -32,6 +32,7 @@
 #include "core/vec3.h"
 
 #include <limits.h>
+#include <math.h>
 #include <string.h>
 
 static const double INDEPENDENCE = 1e-4;
@@ -507,6 +508,29 @@ done:
         ruga_rows_clear(rows);
     }
     return status;
+}
+
+double ruga_rows_nearest(const ruga_rows* rows, const ruga_lattice* lattice, const ruga_handle_def* handles,
+                         int pair[2]) {
+    double nearest = INFINITY;
+    for (int i = 0, first = 0; i < rows->count; i++) {
+        first = rows->axis[i] == rows->axis[first] ? first : i;
+        for (int j = first; j < i; j++) {
+            if (rows->handle[i] == rows->handle[j] || same_motion(&handles[rows->handle[i]], &handles[rows->handle[j]])) {
+                continue;
+            }
+            double far = 0;
+            for (int k = 0; k < 3; k++) {
+                far = fmax(far, fabs(rows->point[3 * i + k] - rows->point[3 * j + k]) / lattice->cell_size[k]);
+            }
+            if (far < nearest) {
+                nearest = far;
+                pair[0] = rows->handle[j];
+                pair[1] = rows->handle[i];
+            }
+        }
+    }
+    return nearest;
 }
 
 void ruga_rows_clear(ruga_rows* rows) {

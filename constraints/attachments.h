@@ -43,6 +43,10 @@ typedef struct ruga_rows {
 ruga_status ruga_rows_create(const ruga_lattice* lattice, const ruga_mesh* mesh, int handle_count,
                              const ruga_handle_def* handles, ruga_rows* rows);
 void ruga_rows_clear(ruga_rows* rows);
+// The two handles of different motions that come nearest to one another, and how many cells lie between nodes
+// that they hold, along the axis where most do; INFINITY where no two differ.
+double ruga_rows_nearest(const ruga_rows* rows, const ruga_lattice* lattice, const ruga_handle_def* handles,
+                         int pair[2]);
 
 // Ramp factor in [0, 1] of a handle at a time, and where its motion takes a rest point at that time. The
 // motion is affine in the rest point; handles that are not moves leave it where it is.

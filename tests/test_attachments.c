@@ -416,6 +416,31 @@ static void the_first_of_overlapping_handles_wins(void** state) {
     clear_body(&b);
 }
 
+static void handles_that_crowd_one_another_are_known(void** state) {
+    (void)state;
+    body b;
+    make_body(BAR, 8, 2, &b);
+    ruga_handle_def handles[3] = {fix(box(-1, -1, -1, -0.2, 1, 1)), fix(box(-0.2, -1, -1, -0.1, 1, 1)),
+                                  move(box(0.2, -1, -1, 1, 1, 1))};
+    for (int shift = 0; shift < 2; shift++) {
+        ruga_rows rows;
+        int pair[2] = {-1, -1};
+        handles[2].region.min[0] = shift ? 0.1 : 0.2;
+        assert_ok(ruga_rows_create(&b.lattice, &b.mesh, 3, handles, &rows));
+        // Held nodes lie half a cell outside of what they hold.
+        assert_near(ruga_rows_nearest(&rows, &b.lattice, handles, pair), shift ? 1 : 2, 1e-9);
+        assert_int_equal(pair[0], 1);
+        assert_int_equal(pair[1], 2);
+        ruga_rows_clear(&rows);
+    }
+    ruga_rows rows;
+    int pair[2];
+    assert_ok(ruga_rows_create(&b.lattice, &b.mesh, 2, handles, &rows));
+    assert_true(ruga_rows_nearest(&rows, &b.lattice, handles, pair) == INFINITY);
+    ruga_rows_clear(&rows);
+    clear_body(&b);
+}
+
 static void handles_that_do_not_hold_the_interior_give_no_rows(void** state) {
     (void)state;
     body b;
@@ -731,6 +756,7 @@ int main(void) {
         cmocka_unit_test(surface_points_alone_are_held),
         cmocka_unit_test(a_single_point_gets_a_single_row_for_each_axis),
         cmocka_unit_test(the_first_of_overlapping_handles_wins),
+        cmocka_unit_test(handles_that_crowd_one_another_are_known),
         cmocka_unit_test(handles_that_do_not_hold_the_interior_give_no_rows),
         cmocka_unit_test(a_large_lattice_is_held_quickly),
         cmocka_unit_test(pressure_gradient_is_the_difference_of_energies),
