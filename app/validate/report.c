@@ -26,18 +26,30 @@ static void write_number(FILE* file, double value) {
     }
 }
 
+// A bar would end the table's cell.
+static void write_cell(FILE* file, const char* text) {
+    (void)fputs("| ", file);
+    for (; *text; text++) {
+        (void)fprintf(file, *text == '|' ? "\\%c" : "%c", *text);
+    }
+    (void)fputc(' ', file);
+}
+
 static void write_line(FILE* file, const json_t* line) {
     double ours = number_of(line, "ours"), reference = number_of(line, "reference");
     const char* kind = text_of(line, "kind");
     bool limit = strcmp(kind, "below") == 0 || strcmp(kind, "above") == 0;
-    (void)fprintf(file, "| %s | ", text_of(line, "quantity"));
+    write_cell(file, text_of(line, "quantity"));
+    (void)fputs("| ", file);
     write_number(file, ours);
-    (void)fputs(limit ? " | " : " | ", file);
+    (void)fputs(" | ", file);
     if (limit) {
         (void)fputs(kind[0] == 'b' ? "at most " : "at least ", file);
     }
     write_number(file, reference);
-    (void)fprintf(file, " | %s | ", text_of(line, "source"));
+    (void)fputc(' ', file);
+    write_cell(file, text_of(line, "source"));
+    (void)fputs("| ", file);
     if (!limit && isfinite(ours) && isfinite(reference) && reference != 0) {
         (void)fprintf(file, "%+.2f %%", 100 * (ours - reference) / fabs(reference));
     }
