@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "constraints/attachments.h"
 #include "core/memory.h"
@@ -702,19 +703,6 @@ static void a_group_is_pressed_on_its_faces(void** state) {
     clear_body(&b);
 }
 
-static int allocations_left;
-
-static void* allocate_some(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? malloc(size) : NULL;
-}
-
-static void free_some(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void any_allocation_may_fail(void** state) {
     (void)state;
     body b;
@@ -730,8 +718,7 @@ static void any_allocation_may_fail(void** state) {
             ruga_rows rows = {0};
             ruga_loads* loads = NULL;
             size_t before = ruga_byte_count();
-            ruga_set_allocator(allocate_some, free_some, NULL);
-            allocations_left = k;
+            let_allocations_fail_after(k);
             status = kind == 0 ? ruga_rows_create(&b.lattice, &b.mesh, 3, handles, &rows)
                                : ruga_loads_create(&b.mesh, &b.connectivity, 3, handles, &loads);
             assert_true(status == RUGA_OK || status == RUGA_NO_MEMORY);

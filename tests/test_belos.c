@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "core/memory.h"
 #include "core/random.h"
@@ -201,28 +202,17 @@ static void bad_numbers_are_refused(void** state) {
     assert_status(ruga_belos_minres(N, apply_chain, NULL, &c, b, x, 1e-8, 100, &report), RUGA_BAD_INPUT);
 }
 
-static int allowed;
-static void* allocate_allowed(size_t size, void* context) {
-    (void)context;
-    return allowed-- > 0 ? malloc(size) : NULL;
-}
-static void free_allowed(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void kth_failed_allocation_is_reported(void** state) {
     (void)state;
     double b[N], x[N];
     ruga_status status = RUGA_NO_MEMORY;
     load_of(b);
-    ruga_set_allocator(allocate_allowed, free_allowed, NULL);
+    ruga_set_allocator(allocate_some, free_some, NULL);
     for (int k = 0; status != RUGA_OK; k++) {
         chain c = {.shift = 0.5, .preconditioner_scale = 1};
         ruga_minres_report report;
         memset(x, 0, sizeof x);
-        allowed = k;
+        allocations_left = k;
         status = ruga_belos_minres(N, apply_chain, apply_jacobi, &c, b, x, 1e-8, 8, &report);
         assert_true(status == RUGA_OK || status == RUGA_NO_MEMORY);
         assert_int_equal(ruga_byte_count(), 0);

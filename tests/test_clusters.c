@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "constraints/clusters.h"
 #include "constraints/laplacian.h"
@@ -395,19 +396,6 @@ static void spectral_rows_are_the_same_bits_twice(void** state) {
     clear_surface(&s);
 }
 
-static int allocations_left;
-
-static void* allocate_some(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? malloc(size) : NULL;
-}
-
-static void free_some(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void any_allocation_may_fail(void** state) {
     (void)state;
     for (int kind = 0; kind < 2; kind++) {
@@ -417,8 +405,7 @@ static void any_allocation_may_fail(void** state) {
             ruga_clusters h;
             make_surface(RUGA_SHAPE_SPHERE, 1, 0.3, &s);
             size_t before = ruga_byte_count();
-            ruga_set_allocator(allocate_some, free_some, NULL);
-            allocations_left = k;
+            let_allocations_fail_after(k);
             status = kind == 0 ? ruga_clusters_create(&s.mesh, &s.connectivity, 0.3, 0.3, 0, 1, &h)
                                : ruga_clusters_create_spectral(&s.mesh, &s.connectivity, 8, &h);
             assert_true(status == RUGA_OK || status == RUGA_NO_MEMORY);

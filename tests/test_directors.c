@@ -3,6 +3,7 @@
 //
 // The Kirchhoff-Love bending element: shell/directors.c within shell/shell.c.
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "core/memory.h"
 #include "core/random.h"
@@ -397,24 +398,10 @@ static void same_bits_for_any_threads_and_any_history(void** state) {
     clear(&fix);
 }
 
-static int allocations_left;
-
-static void* allocate_some(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? malloc(size) : NULL;
-}
-
-static void free_some(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void failed_allocations_neither_crash_nor_leak(void** state) {
     (void)state;
     const ruga_shell_material material = {.skin = plain_skin};
-    ruga_set_allocator(allocate_some, free_some, NULL);
-    allocations_left = 1000;
+    let_allocations_fail_after(1000);
     fixture fix = {.n = 0};
     make_grid(3, 2, 0.1, 0.1, &fix.mesh);
     assert_ok(ruga_connectivity_create(&fix.mesh, &fix.connectivity));

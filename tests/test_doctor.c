@@ -3,6 +3,7 @@
 //
 // Each kind of defect on the smallest mesh that has it, and no defect on sound meshes.
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "core/memory.h"
 #include "core/random.h"
@@ -415,12 +416,6 @@ static void list_is_capped_and_counts_are_not(void** state) {
     ruga_check_report_clear(&report);
 }
 
-static int allocations_left;
-static void* allocate_few(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? aligned_alloc(64, (size + 63) / 64 * 64) : NULL;
-}
-
 static void survives_each_failed_allocation(void** state) {
     (void)state;
     small_mesh m = cube();
@@ -429,8 +424,7 @@ static void survives_each_failed_allocation(void** state) {
     int failed = 0;
     for (ruga_status status = RUGA_NO_MEMORY; status != RUGA_OK; failed++) {
         ruga_check_report report;
-        allocations_left = failed;
-        ruga_set_allocator(allocate_few, NULL, NULL);
+        let_allocations_fail_after(failed);
         status = ruga_mesh_check(view(&m), RUGA_CHECK_EMBEDDED, &report);
         ruga_set_allocator(NULL, NULL, NULL);
         assert_true(status == RUGA_OK || status == RUGA_NO_MEMORY);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "constraints/foundation.h"
 #include "core/memory.h"
@@ -241,19 +242,6 @@ static void force_square_is_the_sum_over_elements(void** state) {
     tear_down(&f);
 }
 
-static int allocations_left;
-
-static void* allocate_some(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? malloc(size) : NULL;
-}
-
-static void free_some(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void any_allocation_may_fail(void** state) {
     (void)state;
     ruga_make_def def = sphere_def(0.3);
@@ -264,8 +252,7 @@ static void any_allocation_may_fail(void** state) {
         ruga_foundation f;
         assert_ok(ruga_mesh_make(&def, &mesh));
         assert_ok(ruga_connectivity_create(&mesh, &c));
-        ruga_set_allocator(allocate_some, free_some, NULL);
-        allocations_left = k;
+        let_allocations_fail_after(k);
         status = ruga_foundation_create(&mesh, &c, A, B, &f);
         assert_true(status == RUGA_OK || status == RUGA_NO_MEMORY);
         ruga_foundation_clear(&f);

@@ -29,7 +29,6 @@ LONG = {
     "include/ruga/types.h": "every def and its documentation on one page; half of it is prose",
     "tests/test_lattice.c": "the flooded reference bodies are shared by all of its properties",
     "tests/test_mesh_file.c": "one program for all formats: each property is tested on each of them",
-    "tests/test_scene.c": "one property for each rule of the scene language",
 }
 
 SPDX = re.compile(r"// SPDX-License-Identifier: MIT\n// Copyright \(c\) \d{4} The Ruga authors\n")

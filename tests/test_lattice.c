@@ -4,6 +4,7 @@
 // The lattice against a reference that knows nothing of surfaces: bodies made of boxes, cut into finer boxes
 // by all planes and flooded. And the properties of the embedding.
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -946,19 +947,6 @@ static void refuses_what_has_no_inside(void** state) {
     ruga_mesh_clear(&mesh);
 }
 
-static int allocations_left;
-
-static void* failing_allocate(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? aligned_alloc(64, (size + 63) / 64 * 64) : NULL;
-}
-
-static void failing_free(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void every_allocation_may_fail(void** state) {
     (void)state;
     for (int fill = RUGA_FILL_MESH; fill <= RUGA_FILL_BOX; fill++) {
@@ -967,8 +955,7 @@ static void every_allocation_may_fail(void** state) {
         ruga_lattice lattice;
         ruga_lattice_def def = {.cells = 3, .degree = 2, .fill = (ruga_fill)fill};
         ruga_status status = RUGA_NO_MEMORY;
-        ruga_set_allocator(failing_allocate, failing_free, NULL);
-        allocations_left = 1000000;
+        let_allocations_fail_after(1000000);
         make(RUGA_SHAPE_SPHERE, 0.4, 0, 0, 0.1, &mesh, &connectivity);
         size_t before = ruga_byte_count();
         for (int k = 0; status != RUGA_OK; k++) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 #include "tests/linear_systems.h"
 
 #include "core/memory.h"
@@ -499,32 +500,20 @@ static void values_that_are_not_finite_are_refused(void** state) {
     system_clear(&s);
 }
 
-static int allowed;
-static void* allocate_allowed(size_t size, void* context) {
-    (void)context;
-    return allowed-- > 0 ? malloc(size) : NULL;
-}
-static void free_allowed(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void kth_failed_allocation_is_reported(void** state) {
     (void)state;
     kkt_def def = {.side = 12, .spacing = 6, .radius = 5, .shift = 3};
     size_t before = ruga_byte_count();
     linear_system s;
     ruga_set_threads(1);
-    ruga_set_allocator(allocate_allowed, free_allowed, NULL);
-    allowed = INT32_MAX;
+    let_allocations_fail_after(INT32_MAX);
     kkt(&s, &def);
     for (int kind = 0; kind < 2; kind++) {
         ruga_status status = RUGA_NO_MEMORY;
         for (int k = 0; status != RUGA_OK; k++) {
             ruga_factor* f = NULL;
             ruga_factor_info info;
-            allowed = k;
+            allocations_left = k;
             status = ruga_factor_create(kind ? RUGA_FACTOR_LDL : RUGA_FACTOR_CHOLESKY, &s.a, s.nodes,
                                         s.node_start, s.last, &f);
             if (status == RUGA_OK) {
@@ -546,12 +535,11 @@ static void nothing_is_allocated_after_the_first_factorisation(void** state) {
     (void)state;
     linear_system s;
     ruga_factor_info info;
-    ruga_set_allocator(allocate_allowed, free_allowed, NULL);
-    allowed = INT32_MAX;
+    let_allocations_fail_after(INT32_MAX);
     kkt(&s, &wavy);
     double* x = random_vector(s.a.rows, 1);
     ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL, &info);
-    allowed = 0;
+    allocations_left = 0;
     assert_ok(ruga_factor_numeric(f, s.a.value, &info));
     assert_ok(ruga_factor_solve(f, x, x));
     assert_ok(ruga_factor_solve_absolute(f, x, x));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "core/memory.h"
 #include "core/vec3.h"
@@ -588,23 +589,9 @@ static void subdivision_keeps_uv_seams_and_groups(void** state) {
 
 // ------------------------------------------------------------------------------ failing allocations
 
-static int allocations_left;
-
-static void* allocate_some(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? malloc(size) : NULL;
-}
-
-static void release_some(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void call_until_success(ruga_status (*call)(void)) {
     for (int k = 0; k < 10000; k++) {
-        allocations_left = k;
-        ruga_set_allocator(allocate_some, release_some, NULL);
+        let_allocations_fail_after(k);
         ruga_status status = call();
         ruga_set_allocator(NULL, NULL, NULL);
         assert_int_equal(ruga_byte_count(), 0);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Ruga authors
 #define _POSIX_C_SOURCE 200809L
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "core/memory.h"
 #include "core/random.h"
@@ -774,24 +775,10 @@ static void numbers_do_not_depend_on_the_locale(void** state) {
 
 // ------------------------------------------------------------------------------ failing allocations
 
-static int allocations_left;
-
-static void* allocate_some(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? malloc(size) : NULL;
-}
-
-static void release_some(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void read_until_success(const char* path) {
     for (int k = 0;; k++) {
         ruga_mesh mesh;
-        allocations_left = k;
-        ruga_set_allocator(allocate_some, release_some, NULL);
+        let_allocations_fail_after(k);
         ruga_status status = ruga_mesh_read(path, &mesh);
         if (status == RUGA_OK) {
             allocations_left = 1000;

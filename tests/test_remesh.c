@@ -4,6 +4,7 @@
 // Remeshing: the wanted edge and near-equilateral faces on made shapes, features kept, uvs and groups carried
 // over, refusals.
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "core/memory.h"
 #include "core/vec3.h"
@@ -357,12 +358,6 @@ static void bad_edges_and_bad_meshes_are_refused(void** state) {
     assert_refused(&empty, 0.1, RUGA_BAD_MESH, "no faces");
 }
 
-static int allocations_left;
-static void* allocate_few(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? aligned_alloc(64, (size + 63) / 64 * 64) : NULL;
-}
-
 static void survives_each_failed_allocation(void** state) {
     (void)state;
     ruga_mesh mesh = sheet(4, 2);
@@ -374,8 +369,7 @@ static void survives_each_failed_allocation(void** state) {
     int failed = 0;
     for (ruga_status status = RUGA_NO_MEMORY; status != RUGA_OK; failed++) {
         ruga_mesh remeshed;
-        allocations_left = failed;
-        ruga_set_allocator(allocate_few, NULL, NULL);
+        let_allocations_fail_after(failed);
         status = ruga_mesh_remesh(&mesh, 0.5, &remeshed);
         ruga_set_allocator(NULL, NULL, NULL);
         assert_true(status == RUGA_OK || status == RUGA_NO_MEMORY);

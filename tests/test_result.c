@@ -9,6 +9,7 @@
 //   test_result fill PATH BYTES               writes until the disk is full; exit code = whole frames
 #define _POSIX_C_SOURCE 200809L
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "core/memory.h"
 #include "io/result.h"
@@ -536,19 +537,6 @@ static void damaged_files_are_refused_with_a_sentence(void** state) {
     free(bytes);
 }
 
-static int allocations_left;
-
-static void* allocate_some(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? malloc(size) : NULL;
-}
-
-static void release_some(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static ruga_status write_read_resume(const content* c) {
     static double restart[RESTART];
     RUGA_TRY(write_file(path, &c->header, 2, 0));
@@ -564,8 +552,7 @@ static void failed_allocations_are_a_status(void** state) {
     static content c;
     fill_content(&c);
     for (int k = 0;; k++) {
-        allocations_left = k;
-        ruga_set_allocator(allocate_some, release_some, NULL);
+        let_allocations_fail_after(k);
         ruga_status status = write_read_resume(&c);
         ruga_set_allocator(NULL, NULL, NULL);
         assert_int_equal(ruga_byte_count(), 0);

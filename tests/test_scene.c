@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "core/memory.h"
 #include "core/random.h"
@@ -744,23 +745,10 @@ static void mutated_scenes_neither_crash_nor_leak(void** state) {
     print_message("%d of 2000 mutated scenes are still valid\n", good);
 }
 
-static int allocations_left;
-
-static void* allocate_some(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? aligned_alloc(64, (size + 63) / 64 * 64) : NULL;
-}
-
-static void release_some(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void every_failing_allocation_is_survived(void** state) {
     (void)state;
     ruga_status status = RUGA_NO_MEMORY;
-    ruga_set_allocator(allocate_some, release_some, NULL);
+    ruga_set_allocator(allocate_some, free_some, NULL);
     int k = 0;
     size_t before = ruga_byte_count();
     for (; status == RUGA_NO_MEMORY && k < 100000; k++) {

@@ -6,6 +6,7 @@
 // weight = 1000 y and uv = x / 0.4, y / 0.2; ramp.png has the greys 0, 0.2, .., 0.8 in its lower row and
 // white above. Refusals: tests/scenes/bad/vary_*.
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "io/mesh_file.h"
 #include "io/scene.h"
@@ -186,26 +187,12 @@ static void a_texture_of_one_pixel_is_a_number(void** state) {
     }
 }
 
-static int allocations_left;
-
-static void* allocate_some(size_t size, void* context) {
-    (void)context;
-    return allocations_left-- > 0 ? malloc(size) : NULL;
-}
-
-static void free_some(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void any_allocation_may_fail(void** state) {
     (void)state;
     ruga_status status = RUGA_NO_MEMORY;
     for (int k = 0; status != RUGA_OK; k++) {
         ruga_scene scene;
-        ruga_set_allocator(allocate_some, free_some, NULL);
-        allocations_left = k;
+        let_allocations_fail_after(k);
         status = ruga_scene_read_text(SHEET "skin: {vary: [{attribute: weight, young: [1 MPa, 2 MPa]}, "
                                             "{texture: ramp.png, thickness: [1 mm, 2 mm]}]}\n",
                                       "scene.yaml", SCENES, 0, NULL, &scene);
