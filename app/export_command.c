@@ -118,11 +118,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     job j = {.arguments = arguments};
     RUGA_TRY(ruga_required(arguments, "--output", &j.pattern));
     RUGA_TRY(choose_format(arguments, j.pattern, &j.format));
-    RUGA_TRY(ruga_check_output(j.pattern));
-    RUGA_TRY(ruga_open_result(ruga_operand(arguments), &j.reader));
-    RUGA_TRY_DONE(ruga_choose_frames(arguments, ruga_result_frame_count(j.reader),
-                                     ruga_has_pattern(j.pattern), &range));
-    RUGA_TRY_DONE(ruga_check_pattern(j.pattern, &range));
+    RUGA_TRY_DONE(ruga_open_frames(arguments, j.pattern, &j.reader, &range));
     RUGA_TRY_DONE(prepare(&j));
     for (int frame = range.first; frame <= range.last; frame++) {
         RUGA_TRY_DONE(export_frame(&j, frame));

@@ -148,11 +148,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     ruga_frame_range range;
     job j = {.arguments = arguments, .def = ruga_default_render_def()};
     RUGA_TRY(ruga_required(arguments, "--output", &j.pattern));
-    RUGA_TRY(ruga_check_output(j.pattern));
-    RUGA_TRY(ruga_open_result(ruga_operand(arguments), &j.reader));
-    RUGA_TRY_DONE(ruga_choose_frames(arguments, ruga_result_frame_count(j.reader),
-                                     ruga_has_pattern(j.pattern), &range));
-    RUGA_TRY_DONE(ruga_check_pattern(j.pattern, &range));
+    RUGA_TRY_DONE(ruga_open_frames(arguments, j.pattern, &j.reader, &range));
     j.def.width = 1280;
     j.def.height = 960;
     RUGA_TRY_DONE(prepare(&j, &range));

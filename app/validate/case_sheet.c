@@ -40,6 +40,12 @@ static void state_lines(ruga_validation* v, double ratio, const sheet_result* r)
     }
 }
 
+static ruga_plot_series series_of(int ratio, const double* y, ruga_plot_style style, char name[48]) {
+    (void)snprintf(name, 48, "ratio %g", ratios[ratio]);
+    return (ruga_plot_series){
+        .name = name, .count = STRAINS, .x = strains, .y = y, .style = style, .color = ratio + 1};
+}
+
 static ruga_status draw_amplitude(ruga_validation* v, int count, const sheet_result* results) {
     char path[RUGA_VALIDATION_PATH], names[RATIOS][48];
     double x[LAW_POINTS], law[LAW_POINTS], low[LAW_POINTS], high[LAW_POINTS], ours[RATIOS][STRAINS];
@@ -62,13 +68,7 @@ static ruga_status draw_amplitude(ruga_validation* v, int count, const sheet_res
         for (int k = 0; k < STRAINS; k++) {
             ours[i][k] = results[i].frame[k].amplitude / results[i].thickness;
         }
-        (void)snprintf(names[i], sizeof names[i], "ratio %g", ratios[i]);
-        series[i + 1] = (ruga_plot_series){.name = names[i],
-                                           .count = STRAINS,
-                                           .x = strains,
-                                           .y = ours[i],
-                                           .style = RUGA_PLOT_MARKERS,
-                                           .color = i + 1};
+        series[i + 1] = series_of(i, ours[i], RUGA_PLOT_MARKERS, names[i]);
     }
     ruga_validation_file(
         v, "amplitude.svg",
@@ -96,13 +96,7 @@ static ruga_status draw_wavelength(ruga_validation* v, int count, const sheet_re
         for (int k = 0; k < STRAINS; k++) {
             ours[i][k] = strains[k] > 1 ? results[i].frame[k].wavelength_fft / results[i].wavelength : NAN;
         }
-        (void)snprintf(names[i], sizeof names[i], "ratio %g", ratios[i]);
-        series[i + 1] = (ruga_plot_series){.name = names[i],
-                                           .count = STRAINS,
-                                           .x = strains,
-                                           .y = ours[i],
-                                           .style = RUGA_PLOT_BOTH,
-                                           .color = i + 1};
+        series[i + 1] = series_of(i, ours[i], RUGA_PLOT_BOTH, names[i]);
     }
     ruga_validation_file(v, "wavelength.svg", "Wavelength by FFT over strain; judged at 2 eps_c", path);
     return ruga_plot_write(&(ruga_plot_def){.x = {.name = "strain / critical strain", .min = 1, .max = 3.05},
