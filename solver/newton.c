@@ -45,7 +45,8 @@ static ruga_status direction_minres(ruga_skin* skin, const double* x, const doub
     RUGA_TRY(ruga_belos_minres(skin->size, apply_system, apply_preconditioner, skin, side, solution, 1e-4,
                                MINRES_MAX, &report));
     skin->work.linear_iterations += report.iterations;
-    memcpy(d, solution, (size_t)skin->n * sizeof *d);
+    // MINRES meets H d = 0 to its tolerance only, and the gradient has a large part in the range of H^T.
+    RUGA_TRY(ruga_skin_project(skin, solution, d));
     *good = report.converged && report.iterations <= MINRES_STALE &&
             ruga_dot_product(skin->n, projected, d) < 0;
     return RUGA_OK;
