@@ -3,13 +3,16 @@
 //
 // Rest state and assembly: energy, gradient and Hessian are sums over triangles (membrane.c) and over hinges,
 // one for each interior edge (bending.c):
-//   E = D/2 |e|^2 / (A1 + A2) (theta - theta0)^2,  D = E h^3 / (12 (1 - nu^2)).
+//   E = k s/2 (theta - theta0)^2,  k = D |e|^2 / (A1 + A2),  D = E h^3 / (12 (1 - nu^2)),
+// s the mean over its two triangles of what their strain does to their thickness (thickness.c).
 // Where its two triangles differ, D is (A1 + A2) / (A1/D1 + A2/D2): both carry the same moment, so that their
 // curvatures, and not their stiffnesses, add up.
 //
-// The Hessian of a hinge is k grad grad^T + k (theta - theta0) H, and H splits into one part for each of the
-// two triangles; these are added to the matrices of the triangles. So each triangle writes a 9 x 9 matrix,
-// and a hinge's own part is made from its gradient when it is gathered. Everything is computed for each
+// The Hessian of a hinge is k s grad grad^T + k s (theta - theta0) H, and H splits into one part for each of
+// the two triangles; these are added to the matrices of the triangles. So are those of s. So each triangle
+// writes a 9 x 9 matrix, and a hinge's own part is made from its gradients when it is gathered: with p = k
+// grad s, t = theta - theta0, its force is k s t grad theta + t^2/2 p, and the mixed part of its Hessian
+// t (grad theta p^T + p grad theta^T). Everything is computed for each
 // element first, and then gathered for each vertex, in an order that the mesh alone decides: the bits are the
 // same for any number of threads.
 //
@@ -22,7 +25,9 @@
 #include "core/parallel.h"
 #include "core/vec3.h"
 #include "shell/bending.h"
+#include "shell/material.h"
 #include "shell/membrane.h"
+#include "shell/thickness.h"
 
 #include <limits.h>
 #include <string.h>
@@ -46,12 +51,15 @@ typedef struct gather {
 struct ruga_shell {
     ruga_membrane membrane;
     double poisson;
+    double thickness_power; // of thickness.c; 0 with directors, whose stiffness is constant
     int vertex_count, triangle_count, hinge_count;
     int (*triangle)[3];
     ruga_membrane_rest* triangle_rest; // [F]
     int (*triangle_hinge)[3];          // [F] hinge at the edge from corner i to corner i + 1, or -1
     int (*hinge)[4];                   // [H] as in ruga_hinge_angle
     hinge_rest* hinge_rest;            // [H]
+    int (*hinge_side)[2];              // [H] 3 triangle + its corner at which the edge begins, on either side
+    double* rest_area;                 // [F] after growth
     bool has_directors;
     ruga_directors directors;
     int (*patch)[PATCH]; // [F] with directors: corners, then the corner across edge i or -1
@@ -67,59 +75,16 @@ struct ruga_shell {
     double (*triangle_gradient)[3][3];                 // [F]
     double (*triangle_block)[RUGA_TRIANGLE_BLOCKS][9]; // [F]
     double (*hinge_gradient)[4][3];                    // [H] of the angle
-    double* hinge_moment;                              // [H] k (theta - theta0)
-    double* hinge_angle;                               // [H] with directors: theta - theta0
+    double* hinge_moment;                              // [H] k s (theta - theta0)
+    double* hinge_angle;                               // [H] theta - theta0
+    double* thickness;                                 // [F] s, where thickness_power is not 0
+    double (*thickness_gradient)[3][3];                // [F]
+    double (*hinge_pull)[4][3];                        // [H] p = k grad s
     double (*patch_gradient)[3][PATCH][3];             // [F] with directors: of w t
     double (*partial)[2];                              // [chunks] energy, sum of squared forces
 };
 
 // ---- Rest state
-
-static ruga_status check_positive(double value, const char* name, const char* unit) {
-    if (!(value > 0) || !isfinite(value)) {
-        return ruga_fail(RUGA_BAD_INPUT, "skin.%s is %g%s: it must be above 0", name, value, unit);
-    }
-    return RUGA_OK;
-}
-
-static ruga_status check_skin(const ruga_shell_material* material) {
-    const ruga_skin_def* skin = &material->skin;
-    if (!material->thickness) {
-        RUGA_TRY(check_positive(skin->thickness, "thickness", " m"));
-    }
-    if (!material->young) {
-        RUGA_TRY(check_positive(skin->young, "young", " Pa"));
-    }
-    if (!material->growth) {
-        RUGA_TRY(check_positive(skin->growth[0], "growth[0]", ""));
-        RUGA_TRY(check_positive(skin->growth[1], "growth[1]", ""));
-    }
-    if (!(skin->poisson > -1 && skin->poisson < 0.5)) {
-        return ruga_fail(RUGA_BAD_INPUT, "skin.poisson is %g: it must be above -1 and below 0.5",
-                         skin->poisson);
-    }
-    if (!(skin->density >= 0) || !isfinite(skin->density)) {
-        return ruga_fail(RUGA_BAD_INPUT, "skin.density is %g kg/m^3: it must not be negative", skin->density);
-    }
-    return RUGA_OK;
-}
-
-static double thickness_of(const ruga_shell_material* material, int f) {
-    return material->thickness ? material->thickness[f] : material->skin.thickness;
-}
-
-static double young_of(const ruga_shell_material* material, int f) {
-    return material->young ? material->young[f] : material->skin.young;
-}
-
-static const double* growth_of(const ruga_shell_material* material, int f) {
-    return material->growth ? material->growth + 2 * (size_t)f : material->skin.growth;
-}
-
-static double bending_stiffness(const ruga_shell_material* material, int f) {
-    double h = thickness_of(material, f), nu = material->skin.poisson;
-    return young_of(material, f) * h * h * h / (12 * (1 - nu * nu));
-}
 
 static void corners(const int triangle[3], const double* x, const double* corner[3]) {
     for (int i = 0; i < 3; i++) {
@@ -145,7 +110,7 @@ static ruga_status fail_at_face(ruga_status status, const ruga_mesh* mesh, int f
 static ruga_status set_triangles(ruga_shell* shell, const ruga_mesh* mesh,
                                  const ruga_shell_material* material, double* area) {
     for (int f = 0; f < shell->triangle_count; f++) {
-        double h = thickness_of(material, f), young = young_of(material, f);
+        double h = ruga_shell_material_thickness(material, f), young = ruga_shell_material_young(material, f);
         if (!(h > 0) || !isfinite(h)) {
             return fail_at_face(RUGA_BAD_INPUT, mesh, f,
                                 "has a thickness that is not above 0: give it one in m");
@@ -154,7 +119,7 @@ static ruga_status set_triangles(ruga_shell* shell, const ruga_mesh* mesh,
             return fail_at_face(RUGA_BAD_INPUT, mesh, f,
                                 "has a Young's modulus that is not above 0: give it one in Pa");
         }
-        const double *x[3], *growth = growth_of(material, f);
+        const double *x[3], *growth = ruga_shell_material_growth(material, f);
         if (!(growth[0] > 0 && growth[1] > 0) || !isfinite(growth[0] * growth[1])) {
             return fail_at_face(RUGA_BAD_INPUT, mesh, f,
                                 "has a growth that is not above 0: 1 leaves lengths alone");
@@ -182,19 +147,23 @@ static void set_hinge(ruga_shell* shell, const ruga_mesh* mesh, const ruga_shell
     for (int i = 0; i < 2; i++) {
         const double* corner[3];
         corners(shell->triangle[side[i]], mesh->position, corner);
-        length += 0.5 * ruga_membrane_grown_length(corner, edge, growth_of(material, side[i]));
+        length +=
+            0.5 * ruga_membrane_grown_length(corner, edge, ruga_shell_material_growth(material, side[i]));
     }
     double a0 = area[side[0]], a1 = area[side[1]];
-    double softness = a0 / bending_stiffness(material, side[0]) + a1 / bending_stiffness(material, side[1]);
+    double softness = a0 / ruga_shell_material_bending(material, side[0]) +
+                      a1 / ruga_shell_material_bending(material, side[1]);
     shell->hinge_rest[h].stiffness = length * length / softness;
     shell->hinge_rest[h].angle = ruga_hinge_angle(x, NULL);
 }
 
-// Tells the triangle that hinge `h` is at its edge that begins at `vertex`.
-static void note_hinge(ruga_shell* shell, int f, int vertex, int h) {
+// Tells the triangle on a side of hinge `h` that it is at its edge that begins at `vertex`, and the hinge
+// where.
+static void note_hinge(ruga_shell* shell, int f, int vertex, int h, int side) {
     for (int i = 0; i < 3; i++) {
         if (shell->triangle[f][i] == vertex) {
             shell->triangle_hinge[f][i] = h;
+            shell->hinge_side[h][side] = 3 * f + i;
         }
     }
 }
@@ -212,8 +181,8 @@ static void set_hinges(ruga_shell* shell, const ruga_mesh* mesh, const ruga_conn
                                connectivity->edge_opposite[e][0], connectivity->edge_opposite[e][1]};
         memcpy(shell->hinge[h], vertex, sizeof vertex);
         set_hinge(shell, mesh, material, h, side, area);
-        note_hinge(shell, side[0], vertex[0], h);
-        note_hinge(shell, side[1], vertex[1], h);
+        note_hinge(shell, side[0], vertex[0], h, 0);
+        note_hinge(shell, side[1], vertex[1], h, 1);
         h++;
     }
 }
@@ -258,13 +227,12 @@ static ruga_status set_directors(ruga_shell* shell, const ruga_connectivity* con
                                    (const int(*)[3])shell->triangle_hinge, shell->hinge_count,
                                    (const int(*)[4])shell->hinge, d));
     RUGA_TRY(RUGA_NEW(shell->patch, shell->triangle_count));
-    RUGA_TRY(RUGA_NEW(shell->hinge_angle, shell->hinge_count));
     RUGA_TRY(RUGA_NEW(shell->patch_gradient, shell->triangle_count));
     set_patch(shell, connectivity);
     for (int f = 0; f < shell->triangle_count; f++) {
         const int* h = shell->triangle_hinge[f];
         const bool rim[3] = {h[0] < 0, h[1] < 0, h[2] < 0};
-        ruga_director_stiffness(&shell->triangle_rest[f], area[f], bending_stiffness(material, f),
+        ruga_director_stiffness(&shell->triangle_rest[f], area[f], ruga_shell_material_bending(material, f),
                                 material->skin.poisson, rim, d->stiffness[f]);
         if (material->held && material->held[f]) {
             hold_directors(shell, material, f);
@@ -275,17 +243,9 @@ static ruga_status set_directors(ruga_shell* shell, const ruga_connectivity* con
 
 static ruga_status set_rest(ruga_shell* shell, const ruga_mesh* mesh, const ruga_connectivity* connectivity,
                             const ruga_shell_material* material) {
-    double* area = NULL;
-    RUGA_TRY(RUGA_NEW(area, shell->triangle_count));
-    ruga_status status = set_triangles(shell, mesh, material, area);
-    if (status == RUGA_OK) {
-        set_hinges(shell, mesh, connectivity, material, area);
-    }
-    if (status == RUGA_OK && shell->has_directors) {
-        status = set_directors(shell, connectivity, material, area);
-    }
-    ruga_release(area);
-    return status;
+    RUGA_TRY(set_triangles(shell, mesh, material, shell->rest_area));
+    set_hinges(shell, mesh, connectivity, material, shell->rest_area);
+    return shell->has_directors ? set_directors(shell, connectivity, material, shell->rest_area) : RUGA_OK;
 }
 
 // ---- Pattern and gathers
@@ -399,11 +359,19 @@ static ruga_status allocate(ruga_shell* shell) {
     RUGA_TRY(RUGA_NEW(shell->triangle_hinge, triangles));
     RUGA_TRY(RUGA_NEW(shell->hinge, hinges));
     RUGA_TRY(RUGA_NEW(shell->hinge_rest, hinges));
+    RUGA_TRY(RUGA_NEW(shell->hinge_side, hinges));
+    RUGA_TRY(RUGA_NEW(shell->rest_area, triangles));
     RUGA_TRY(RUGA_NEW_ZERO(shell->vertex_mass, shell->vertex_count));
     RUGA_TRY(RUGA_NEW(shell->triangle_gradient, triangles));
     RUGA_TRY(RUGA_NEW(shell->triangle_block, triangles));
     RUGA_TRY(RUGA_NEW(shell->hinge_gradient, hinges));
     RUGA_TRY(RUGA_NEW(shell->hinge_moment, hinges));
+    RUGA_TRY(RUGA_NEW(shell->hinge_angle, hinges));
+    if (shell->thickness_power != 0) {
+        RUGA_TRY(RUGA_NEW(shell->thickness, triangles));
+        RUGA_TRY(RUGA_NEW(shell->thickness_gradient, triangles));
+        RUGA_TRY(RUGA_NEW(shell->hinge_pull, hinges));
+    }
     int most = triangles > hinges ? triangles : hinges;
     return RUGA_NEW(shell->partial, ruga_chunk_count(most, CHUNK));
 }
@@ -415,7 +383,7 @@ ruga_status ruga_shell_create(const ruga_mesh* mesh, const ruga_connectivity* co
     *shell = NULL;
     RUGA_ASSERT(connectivity->vertex_count == mesh->vertex_count);
     RUGA_ASSERT(connectivity->triangle_count == mesh->triangle_count);
-    RUGA_TRY(check_skin(material));
+    RUGA_TRY(ruga_shell_material_check(material));
     int hinges = count_hinges(connectivity);
     bool made_of_patches = material->skin.bending == RUGA_BENDING_KIRCHHOFF_LOVE;
     if (mesh->triangle_count > INT_MAX / (made_of_patches ? PATCH * PATCH : 9) || hinges > INT_MAX / 16) {
@@ -430,6 +398,7 @@ ruga_status ruga_shell_create(const ruga_mesh* mesh, const ruga_connectivity* co
     made->triangle_count = mesh->triangle_count;
     made->hinge_count = hinges;
     made->has_directors = made_of_patches;
+    made->thickness_power = made_of_patches ? 0 : ruga_thickness_power(material->skin.poisson);
     RUGA_TRY_DONE(allocate(made));
     RUGA_TRY_DONE(set_rest(made, mesh, connectivity, material));
     RUGA_TRY_DONE(set_pattern(made, connectivity));
@@ -456,6 +425,11 @@ void ruga_shell_destroy(ruga_shell** shell) {
     ruga_release(s->triangle_hinge);
     ruga_release(s->hinge);
     ruga_release(s->hinge_rest);
+    ruga_release(s->hinge_side);
+    ruga_release(s->rest_area);
+    ruga_release(s->thickness);
+    ruga_release(s->thickness_gradient);
+    ruga_release(s->hinge_pull);
     ruga_release(s->vertex_mass);
     ruga_sparse_clear(&s->pattern);
     ruga_release(s->block_start);
@@ -508,6 +482,10 @@ static void triangle_energies(int begin, int end, int chunk, void* context) {
         double(*g)[3] = shell->triangle_gradient[f];
         corners(shell->triangle[f], p->x, x);
         energy += ruga_membrane_energy(shell->membrane, shell->poisson, &shell->triangle_rest[f], x, g);
+        if (shell->thickness) {
+            shell->thickness[f] = ruga_thickness_stiffness(shell->thickness_power, shell->rest_area[f], x,
+                                                           shell->thickness_gradient[f]);
+        }
         force_square += ruga_dot(g[0], g[0]) + ruga_dot(g[1], g[1]) + ruga_dot(g[2], g[2]);
     }
     shell->partial[chunk][0] = energy;
@@ -533,6 +511,37 @@ static void settle_directors(pass* p) {
     ruga_directors_settle(&directors, p->shell->hinge_angle, p->shell->hinge_moment);
 }
 
+// Sets the hinge's p and returns its s.
+static double set_hinge_pull(const ruga_shell* shell, int h) {
+    // Corners of the hinge from the corner at which the edge begins onwards, on either side.
+    static const int corner[2][3] = {{0, 1, 2}, {1, 0, 3}};
+    double(*pull)[3] = shell->hinge_pull[h], factor = 0;
+    memset(pull, 0, sizeof shell->hinge_pull[h]);
+    for (int side = 0; side < 2; side++) {
+        int f = shell->hinge_side[h][side] / 3, first = shell->hinge_side[h][side] % 3;
+        factor += 0.5 * shell->thickness[f];
+        for (int i = 0; i < 3; i++) {
+            ruga_add_scaled(0.5 * shell->hinge_rest[h].stiffness,
+                            shell->thickness_gradient[f][(first + i) % 3], pull[corner[side][i]]);
+        }
+    }
+    return factor;
+}
+
+static double force_square_of(const ruga_shell* shell, int h) {
+    double sum = 0;
+    for (int c = 0; c < 4; c++) {
+        double force[3] = {0, 0, 0};
+        ruga_add_scaled(shell->hinge_moment[h], shell->hinge_gradient[h][c], force);
+        if (shell->thickness) {
+            ruga_add_scaled(0.5 * shell->hinge_angle[h] * shell->hinge_angle[h], shell->hinge_pull[h][c],
+                            force);
+        }
+        sum += ruga_dot(force, force);
+    }
+    return sum;
+}
+
 static void hinge_energies(int begin, int end, int chunk, void* context) {
     const pass* p = context;
     const ruga_shell* shell = p->shell;
@@ -545,12 +554,12 @@ static void hinge_energies(int begin, int end, int chunk, void* context) {
         bool known = shell->has_directors; // angle and moment, by settle_directors
         double angle =
             known ? shell->hinge_angle[h] : ruga_angle_difference(ruga_hinge_angle(x, g), rest->angle);
-        double moment = known ? shell->hinge_moment[h] : rest->stiffness * angle;
+        double stiffness = rest->stiffness * (shell->thickness ? set_hinge_pull(shell, h) : 1);
+        double moment = known ? shell->hinge_moment[h] : stiffness * angle;
+        shell->hinge_angle[h] = angle;
         shell->hinge_moment[h] = moment;
         energy += 0.5 * moment * angle;
-        force_square +=
-            moment * moment *
-            (ruga_dot(g[0], g[0]) + ruga_dot(g[1], g[1]) + ruga_dot(g[2], g[2]) + ruga_dot(g[3], g[3]));
+        force_square += force_square_of(shell, h);
     }
     shell->partial[chunk][0] = energy;
     shell->partial[chunk][1] = force_square;
@@ -578,8 +587,12 @@ static void gather_gradient(int begin, int end, int chunk, void* context) {
         }
         from = &shell->vertex_hinge;
         for (int k = from->start[v]; k < from->start[v + 1]; k++) {
-            int item = from->item[k];
-            ruga_add_scaled(shell->hinge_moment[item / 4], shell->hinge_gradient[item / 4][item % 4], sum);
+            int h = from->item[k] / 4, corner = from->item[k] % 4;
+            ruga_add_scaled(shell->hinge_moment[h], shell->hinge_gradient[h][corner], sum);
+            if (shell->thickness) {
+                ruga_add_scaled(0.5 * shell->hinge_angle[h] * shell->hinge_angle[h],
+                                shell->hinge_pull[h][corner], sum);
+            }
         }
         memcpy(p->gradient + 3 * (size_t)v, sum, sizeof sum);
     }
@@ -591,15 +604,22 @@ static void triangle_hessians(int begin, int end, int chunk, void* context) {
     const ruga_shell* shell = p->shell;
     for (int f = begin; f < end; f++) {
         const double* x[3];
-        double moment[3];
+        double moment[3], bent = 0;
         corners(shell->triangle[f], p->x, x);
         ruga_membrane_hessian(shell->membrane, shell->poisson, &shell->triangle_rest[f], x, p->clamp,
                               shell->triangle_block[f]);
         for (int i = 0; i < 3; i++) {
             int h = shell->triangle_hinge[f][i];
             moment[i] = h < 0 ? 0 : (1 - p->clamp) * shell->hinge_moment[h];
+            bent +=
+                h < 0 ? 0
+                      : 0.25 * shell->hinge_rest[h].stiffness * shell->hinge_angle[h] * shell->hinge_angle[h];
         }
         ruga_hinge_add_hessian(x, moment, shell->triangle_block[f]);
+        if (shell->thickness && p->clamp < 1) {
+            ruga_thickness_add_hessian(shell->thickness_power, shell->rest_area[f], x, (1 - p->clamp) * bent,
+                                       shell->triangle_block[f]);
+        }
     }
 }
 
@@ -620,13 +640,30 @@ static void add_triangle_block(double block[RUGA_TRIANGLE_BLOCKS][9], int pair, 
     }
 }
 
-static void add_hinge_block(double stiffness, const double row[3], const double column[3], double sum[9]) {
+static void add_product(double scale, const double row[3], const double column[3], double sum[9]) {
     for (int r = 0; r < 3; r++) {
-        double s = stiffness * row[r];
+        double s = scale * row[r];
         for (int c = 0; c < 3; c++) {
             sum[3 * r + c] += s * column[c];
         }
     }
+}
+
+static void add_hinge_block(const ruga_shell* shell, double clamp, int h, int row, int column,
+                            double sum[9]) {
+    const double(*g)[3] = (const double(*)[3])shell->hinge_gradient[h];
+    double stiffness = shell->hinge_rest[h].stiffness;
+    if (!shell->thickness) {
+        add_product(stiffness, g[row], g[column], sum);
+        return;
+    }
+    const double(*pull)[3] = (const double(*)[3])shell->hinge_pull[h];
+    const int* side = shell->hinge_side[h];
+    double mixed = (1 - clamp) * shell->hinge_angle[h];
+    stiffness *= 0.5 * (shell->thickness[side[0] / 3] + shell->thickness[side[1] / 3]);
+    add_product(stiffness, g[row], g[column], sum);
+    add_product(mixed, g[row], pull[column], sum);
+    add_product(mixed, pull[row], g[column], sum);
 }
 
 // Gradients of the angles of a triangle's hinges, times its parts of them, by the vertices of its patch.
@@ -659,7 +696,7 @@ static void add_patch_block(const ruga_shell* shell, int f, int row, int column,
     for (int i = 0; i < 9; i++) {
         double k = shell->directors.stiffness[f][i / 3][i % 3];
         if (k != 0) {
-            add_hinge_block(k, g[i / 3][row], g[i % 3][column], sum);
+            add_product(k, g[i / 3][row], g[i % 3][column], sum);
         }
     }
 }
@@ -685,8 +722,7 @@ static void gather_hessian(int begin, int end, int chunk, void* context) {
             for (int k = shell->has_directors ? 0 : hinges->start[b];
                  !shell->has_directors && k < hinges->start[b + 1]; k++) {
                 int h = hinges->item[k] / 16, pair = hinges->item[k] % 16;
-                add_hinge_block(shell->hinge_rest[h].stiffness, shell->hinge_gradient[h][pair / 4],
-                                shell->hinge_gradient[h][pair % 4], sum);
+                add_hinge_block(shell, p->clamp, h, pair / 4, pair % 4, sum);
             }
             // Column c begins at its diagonal: it lacks the first c entries of the first block.
             int number = b - shell->block_start[v];

@@ -11,19 +11,9 @@
 #include "mesh/connectivity.h"
 #include "mesh/mesh.h"
 #include "shell/directors.h"
+#include "shell/material.h"
 
 typedef struct ruga_shell ruga_shell;
-
-// Material of each triangle: arrays [F], or NULL to use the skin's single value. The arrays over vertices of
-// the skin's def are not looked at: ruga_mesh_triangle_averages makes triangles' values of them.
-typedef struct ruga_shell_material {
-    ruga_skin_def skin;
-    const double* thickness; // [F] m, or NULL
-    const double* young;     // [F] Pa, or NULL
-    const double* growth;    // [F][2], or NULL
-    const bool* held; // [F] or NULL: triangles whose corners are all held. The directors on their border are
-                      // theirs, so that they clamp what is beside them. Hinges do not ask
-} ruga_shell_material;
 
 // RUGA_BAD_INPUT or RUGA_BAD_MESH names the field, or the face and where it is. Nothing of the arguments is
 // kept.
