@@ -15,7 +15,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { MAX_NEWTON = 60, MAX_CG = 80, MAX_BACKTRACKS = 20 };
+// STALE_CG: products of one direction beyond which a preconditioner is renewed.
+enum { MAX_NEWTON = 60, MAX_CG = 80, STALE_CG = 12, MAX_BACKTRACKS = 20 };
 enum { RESIDUAL, DIRECTION, CG_R, CG_Z, CG_P, CG_AP, SIDE, SOLUTION, TRIAL_Q, ELASTIC }; // interior vectors
 enum { GRADIENT, PRESS, BU, MOVE, IMAGE, TRIAL_X };                                      // surface vectors
 
@@ -526,16 +527,21 @@ static ruga_status solve_skin(ruga_interior* in, double tolerance, double* x, co
     memcpy(x, embedded, (size_t)in->skin->n * sizeof *x);
     result->skin.outcome = RUGA_OUTCOME_MINIMUM;
     result->skin.residual = 0;
-    return ruga_skin_assemble(in->skin, x, 0);
+    return RUGA_OK;
 }
 
 ruga_status ruga_interior_minimize(ruga_interior* in, double tolerance, double* q, double* x, double* embedded,
                                    ruga_interior_result* result) {
     double *r = interior_vector(in, RESIDUAL), *dq = interior_vector(in, DIRECTION), total;
     *result = (ruga_interior_result){0};
-    RUGA_TRY(factor_preconditioner(in, q, x));
-    result->factorizations++;
+    // The predictor's factor, of where the step began, serves as well where a product costs next to nothing. With a
+    // skin to solve for, each product is a solve with the skin's matrix, and a fresh factor saves some.
+    int products = in->model->solves_skin ? MAX_CG : 0;
     for (int k = 0; k < MAX_NEWTON; k++, result->iterations++) {
+        if (products > STALE_CG || k % 6 == 5) {
+            RUGA_TRY(factor_preconditioner(in, q, x));
+            result->factorizations++;
+        }
         RUGA_TRY(solve_skin(in, 0.5 * tolerance, x, embedded, result));
         RUGA_TRY(residual(in, q, x, embedded, result, &total, r));
         result->converged = result->residual <= tolerance;
@@ -546,14 +552,15 @@ ruga_status ruga_interior_minimize(ruga_interior* in, double tolerance, double* 
         if (in->model->solves_skin && !in->skin->factor_exact) {
             RUGA_TRY(ruga_skin_factor_convex(in->skin, x));
         }
-        if (k % 6 == 5) {
-            RUGA_TRY(factor_preconditioner(in, q, x));
-            result->factorizations++;
+        if (!in->model->solves_skin) {
+            RUGA_TRY(ruga_skin_assemble(in->skin, x, 0));
         }
         RUGA_TRY(assemble(in, q));
         double forcing = fmin(0.1, sqrt(result->residual));
+        products = -result->linear_iterations;
         RUGA_TRY(newton_direction(in, r, fmax(forcing, 0.1 * tolerance / result->residual), dq,
                                   &result->linear_iterations));
+        products += result->linear_iterations;
         bool moved;
         double slope = ruga_dot_product(in->n, r, dq);
         if (slope > 0) {

@@ -468,25 +468,32 @@ static void take_interior_result(ruga_state* state, const ruga_interior_result* 
     report->energy_external += result->weight;
 }
 
-// One part of a step of the coupled system, of length dt, ending at `time`.
-static ruga_status step_part(ruga_state* state, double time, double dt, ruga_report* report) {
+// Sets up a part of a step, of length dt, ending at `time`, and puts its linearised answer into old_q.
+static ruga_status predict_part(ruga_state* state, double time, double dt, ruga_report* report) {
+    const ruga_model* model = state->model;
+    ruga_interior* in = state->interior;
+    bool dynamic = model->interior.motion == RUGA_INTERIOR_DYNAMIC;
+    memcpy(in->previous, state->q, (size_t)in->n * sizeof *state->q);
+    for (int i = 0; i < in->n; i++) {
+        in->start[i] = state->q[i] + (dynamic ? dt * state->v[i] : 0);
+    }
+    in->mass_factor = dynamic ? 1 / (dt * dt) : 0;
+    in->damping_factor = dynamic ? model->interior.damping / dt : 0;
+    state->skin->time = time;
+    ruga_interior_set_targets(in, time);
+    report->factorizations++;
+    return ruga_interior_predict(in, state->q, state->x, state->old_q);
+}
+
+// One part of a step of the coupled system from its prediction.
+static ruga_status step_part(ruga_state* state, double dt, ruga_report* report) {
     const ruga_model* model = state->model;
     ruga_interior* in = state->interior;
     int n = in->n;
     bool dynamic = model->interior.motion == RUGA_INTERIOR_DYNAMIC;
     ruga_interior_result result;
-    memcpy(in->previous, state->q, (size_t)n * sizeof *state->q);
-    memcpy(in->start, state->q, (size_t)n * sizeof *state->q);
-    for (int i = 0; i < n && dynamic; i++) {
-        in->start[i] += dt * state->v[i];
-    }
-    in->mass_factor = dynamic ? 1 / (dt * dt) : 0;
-    in->damping_factor = dynamic ? model->interior.damping / dt : 0;
-    state->skin->time = time;
     set_damping(state, dt);
-    ruga_interior_set_targets(in, time);
     set_handle_targets(state);
-    RUGA_TRY(ruga_interior_predict(in, state->q, state->x, state->old_q));
     memcpy(state->q, state->old_q, (size_t)n * sizeof *state->q);
     ruga_lattice_embed(&model->lattice, state->q, state->next_embedded);
     carry_skin(state, state->next_embedded);
@@ -504,35 +511,22 @@ static ruga_status step_part(ruga_state* state, double time, double dt, ruga_rep
     return RUGA_OK;
 }
 
-// What the whole step would do to the surface if the skin followed: how many parts it needs.
-static ruga_status foresee(ruga_state* state, int* parts) {
-    const ruga_model* model = state->model;
-    ruga_interior* in = state->interior;
-    double dt = model->step;
-    bool dynamic = model->interior.motion == RUGA_INTERIOR_DYNAMIC;
-    memcpy(in->previous, state->q, (size_t)in->n * sizeof *state->q);
-    for (int i = 0; i < in->n; i++) {
-        in->start[i] = state->q[i] + (dynamic ? dt * state->v[i] : 0);
-    }
-    in->mass_factor = dynamic ? 1 / (dt * dt) : 0;
-    in->damping_factor = dynamic ? model->interior.damping / dt : 0;
-    state->skin->time = state->time + dt;
-    ruga_interior_set_targets(in, state->skin->time);
-    RUGA_TRY(ruga_interior_predict(in, state->q, state->x, state->old_q));
-    ruga_lattice_embed(&model->lattice, state->old_q, state->next_embedded);
-    *parts = count_substeps(state, state->embedded, state->next_embedded);
-    return RUGA_OK;
-}
-
+// The whole step is predicted first, with the skin following: what that would do to the surface tells how many parts
+// the step needs.
 static ruga_status step_coupled(ruga_state* state, ruga_report* report) {
     double begin = state->time, dt = state->model->step;
     int parts = 1;
+    RUGA_TRY(predict_part(state, begin + dt, dt, report));
     if (state->model->solver.method != RUGA_METHOD_PAPER) {
-        RUGA_TRY(foresee(state, &parts));
+        ruga_lattice_embed(&state->model->lattice, state->old_q, state->next_embedded);
+        parts = count_substeps(state, state->embedded, state->next_embedded);
     }
     report->substeps = parts;
     for (int k = 1; k <= parts; k++) {
-        RUGA_TRY(step_part(state, begin + dt * k / parts, dt / parts, report));
+        if (parts > 1) {
+            RUGA_TRY(predict_part(state, begin + dt * k / parts, dt / parts, report));
+        }
+        RUGA_TRY(step_part(state, dt / parts, report));
     }
     return RUGA_OK;
 }
