@@ -14,34 +14,28 @@
 // same for any number of threads.
 //
 // With directors (directors.c) a hinge's moment is not its stiffness times its angle but comes from all of
-// them. The part w grad t K (w grad t)^T couples the three hinges of a triangle, and so its corners with
-// those of its neighbours: this patch of up to six vertices is one more element.
+// them. The part w grad t Q (w grad t)^T couples the three hinges of a triangle with one another and with its
+// neighbours', and so the vertices of its patch (its corners and those of its neighbours, up to six) with one
+// another and with the neighbours' patches: patches and pairs of them are two more kinds of elements.
 #include "shell/shell.h"
 
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/vec3.h"
 #include "shell/bending.h"
+#include "shell/gather.h"
 #include "shell/membrane.h"
 
 #include <limits.h>
 #include <string.h>
 
-// Elements or vertices in one piece of parallel work.
-enum { CHUNK = 256 };
-// Vertices of a triangle and its neighbours.
-enum { PATCH = 6 };
+enum { CHUNK = 256 }; // elements or vertices in one piece of parallel work
+enum { PATCH = 6 };   // vertices of a triangle and its neighbours
 
 typedef struct hinge_rest {
     double stiffness; // k = D |e|^2 / (A1 + A2), J
     double angle;
 } hinge_rest;
-
-// For each target the items that add to it, ascending.
-typedef struct gather {
-    int* start; // [targets + 1]
-    int* item;
-} gather;
 
 struct ruga_shell {
     ruga_membrane membrane;
@@ -57,12 +51,13 @@ struct ruga_shell {
     int (*patch)[PATCH]; // [F] with directors: corners, then the corner across edge i or -1
     double* vertex_mass; // [V]
     ruga_sparse pattern;
-    int* block_start;       // [V + 1] first 3 x 3 block of a vertex's columns
-    gather vertex_triangle; // vertex <- 3 triangle + corner
-    gather vertex_hinge;    // vertex <- 4 hinge + corner
-    gather block_triangle;  // block <- 9 triangle + 3 row corner + column corner
-    gather block_hinge;     // block <- 16 hinge + 4 row corner + column corner
-    gather block_patch;     // block <- 36 triangle + 6 row + column; in place of block_hinge with directors
+    int* block_start;            // [V + 1] first 3 x 3 block of a vertex's columns
+    ruga_gather vertex_triangle; // vertex <- 3 triangle + corner
+    ruga_gather vertex_hinge;    // vertex <- 4 hinge + corner
+    ruga_gather block_triangle;  // block <- 9 triangle + 3 row corner + column corner
+    ruga_gather block_hinge;     // block <- 16 hinge + 4 row corner + column corner
+    ruga_gather block_patch; // block <- 36 triangle + 6 row + column; in place of block_hinge with directors
+    ruga_gather block_pair;  // block <- 36 hinge + 6 vertex of one patch + vertex of the other
     // Scratch of ruga_shell_energy, which writes here although the shell is const.
     double (*triangle_gradient)[3][3];                 // [F]
     double (*triangle_block)[RUGA_TRIANGLE_BLOCKS][9]; // [F]
@@ -251,25 +246,54 @@ static void hold_directors(ruga_shell* shell, const ruga_shell_material* materia
     }
 }
 
+// Both sides' A D in series, so that the term is never large against what either triangle has. Nothing bends
+// on a held side, and across a crease nothing makes curvatures agree: hence the square of the rest angle's
+// cosine.
+static double jump_scale(const ruga_shell* shell, const ruga_shell_material* material, int h,
+                         const double* area) {
+    double softness = 0, cosine = fmax(cos(shell->hinge_rest[h].angle), 0);
+    for (int i = 0; i < 2; i++) {
+        int f = shell->directors.hinge_triangle[h][i];
+        if (material->held && material->held[f]) {
+            return 0;
+        }
+        softness += 1 / (area[f] * bending_stiffness(material, f));
+    }
+    return cosine * cosine * 4 / (3 * softness);
+}
+
+static void set_stiffness(ruga_shell* shell, const ruga_shell_material* material, const double* area,
+                          double (*form)[3][3]) {
+    ruga_directors* d = &shell->directors;
+    double nu = material->skin.poisson;
+    for (int f = 0; f < shell->triangle_count; f++) {
+        const int* h = shell->triangle_hinge[f];
+        const bool rim[3] = {h[0] < 0, h[1] < 0, h[2] < 0};
+        ruga_director_form(&shell->triangle_rest[f], nu, rim, form[f]);
+        ruga_director_stiffness(area[f] * bending_stiffness(material, f), nu, form[f], d->stiffness[f]);
+        if (material->held && material->held[f]) {
+            hold_directors(shell, material, f);
+        }
+    }
+    for (int h = 0; h < shell->hinge_count; h++) {
+        ruga_directors_join(d, h, shell->triangle_rest, form, jump_scale(shell, material, h, area), nu);
+    }
+}
+
 static ruga_status set_directors(ruga_shell* shell, const ruga_connectivity* connectivity,
                                  const ruga_shell_material* material, const double* area) {
     ruga_directors* d = &shell->directors;
+    double(*form)[3][3] = NULL;
     RUGA_TRY(ruga_directors_create(shell->vertex_count, shell->triangle_count,
                                    (const int(*)[3])shell->triangle_hinge, shell->hinge_count,
                                    (const int(*)[4])shell->hinge, d));
     RUGA_TRY(RUGA_NEW(shell->patch, shell->triangle_count));
     RUGA_TRY(RUGA_NEW(shell->hinge_angle, shell->hinge_count));
     RUGA_TRY(RUGA_NEW(shell->patch_gradient, shell->triangle_count));
+    RUGA_TRY(RUGA_NEW(form, shell->triangle_count));
     set_patch(shell, connectivity);
-    for (int f = 0; f < shell->triangle_count; f++) {
-        const int* h = shell->triangle_hinge[f];
-        const bool rim[3] = {h[0] < 0, h[1] < 0, h[2] < 0};
-        ruga_director_stiffness(&shell->triangle_rest[f], area[f], bending_stiffness(material, f),
-                                material->skin.poisson, rim, d->stiffness[f]);
-        if (material->held && material->held[f]) {
-            hold_directors(shell, material, f);
-        }
-    }
+    set_stiffness(shell, material, area, form);
+    ruga_release(form);
     return ruga_directors_link(d);
 }
 
@@ -293,7 +317,8 @@ static ruga_status set_rest(ruga_shell* shell, const ruga_mesh* mesh, const ruga
 static ruga_status set_pattern(ruga_shell* shell, const ruga_connectivity* connectivity) {
     int(*pairs)[2] = NULL;
     int64_t count = connectivity->edge_count + (int64_t)shell->hinge_count;
-    RUGA_TRY(RUGA_NEW(pairs, count + (shell->has_directors ? 3 * (int64_t)shell->triangle_count : 0)));
+    int64_t more = 3 * (int64_t)shell->triangle_count + 9 * (int64_t)shell->hinge_count;
+    RUGA_TRY(RUGA_NEW(pairs, count + (shell->has_directors ? more : 0)));
     for (int e = 0; e < connectivity->edge_count; e++) {
         memcpy(pairs[e], connectivity->edge[e], sizeof pairs[e]);
     }
@@ -304,6 +329,15 @@ static ruga_status set_pattern(ruga_shell* shell, const ruga_connectivity* conne
     for (int k = 0; k < 3 * shell->triangle_count && shell->has_directors; k++) {
         const int* across = shell->patch[k / 3] + 3;
         int a = across[k % 3], b = across[(k + 1) % 3];
+        if (a >= 0 && b >= 0) {
+            pairs[count][0] = a;
+            pairs[count++][1] = b;
+        }
+    }
+    // Across two patches.
+    for (int k = 0; k < 9 * shell->hinge_count && shell->has_directors; k++) {
+        const int* side = shell->directors.hinge_triangle[k / 9];
+        int a = shell->patch[side[0]][3 + k % 9 / 3], b = shell->patch[side[1]][3 + k % 3];
         if (a >= 0 && b >= 0) {
             pairs[count][0] = a;
             pairs[count++][1] = b;
@@ -322,64 +356,60 @@ static ruga_status set_pattern(ruga_shell* shell, const ruga_connectivity* conne
     return RUGA_OK;
 }
 
-// Items by their target; target[item] is -1 where an item adds to none.
-static ruga_status gather_create(int target_count, int item_count, const int* target, gather* result) {
-    RUGA_TRY(RUGA_NEW_ZERO(result->start, target_count + 1));
-    int used = 0;
-    for (int k = 0; k < item_count; k++) {
-        if (target[k] >= 0) {
-            result->start[target[k] + 1]++;
-            used++;
-        }
+// Number of the 3 x 3 block of two vertices, in either order; -1 where one is missing.
+static int block_of(const ruga_shell* shell, int a, int b) {
+    int row = a > b ? a : b, column = a > b ? b : a;
+    if (column < 0) {
+        return -1;
     }
-    RUGA_TRY(RUGA_NEW(result->item, used));
-    for (int t = 0; t < target_count; t++) {
-        result->start[t + 1] += result->start[t];
-    }
-    // Filling moves each start to its end; shifting by one target afterwards puts them back.
-    for (int k = 0; k < item_count; k++) {
-        if (target[k] >= 0) {
-            result->item[result->start[target[k]]++] = k;
-        }
-    }
-    memmove(result->start + 1, result->start, (size_t)target_count * sizeof *result->start);
-    result->start[0] = 0;
-    return RUGA_OK;
+    int position = ruga_sparse_find(&shell->pattern, 3 * row, 3 * column);
+    RUGA_ASSERT(position >= 0);
+    return shell->block_start[column] + (position - shell->pattern.start[3 * column]) / 3;
 }
 
 // Gather of the blocks of the lower triangle from all corner pairs of elements with `size` corners.
 static ruga_status block_gather_create(const ruga_shell* shell, int element_count, int size,
-                                       const int* vertex, gather* result) {
-    int* target = NULL;
-    int pairs = size * size;
+                                       const int* vertex, ruga_gather* result) {
+    int *target = NULL, pairs = size * size;
     RUGA_TRY(RUGA_NEW(target, (size_t)element_count * (size_t)pairs));
     for (int k = 0; k < element_count; k++) {
         const int* corner = vertex + (size_t)k * (size_t)size;
         for (int i = 0; i < pairs; i++) {
             int row = corner[i / size], column = corner[i % size];
-            int* block = &target[(size_t)k * (size_t)pairs + (size_t)i];
-            *block = -1;
-            if (row >= column && column >= 0) {
-                int position = ruga_sparse_find(&shell->pattern, 3 * row, 3 * column);
-                RUGA_ASSERT(position >= 0);
-                *block = shell->block_start[column] + (position - shell->pattern.start[3 * column]) / 3;
-            }
+            target[(size_t)k * (size_t)pairs + (size_t)i] = row >= column ? block_of(shell, row, column) : -1;
         }
     }
     ruga_status status =
-        gather_create(shell->block_start[shell->vertex_count], element_count * pairs, target, result);
+        ruga_gather_create(shell->block_start[shell->vertex_count], element_count * pairs, target, result);
+    ruga_release(target);
+    return status;
+}
+
+// The same from all pairs of a vertex of one triangle's patch and one of its neighbour's, for each hinge.
+static ruga_status pair_gather_create(const ruga_shell* shell, ruga_gather* result) {
+    int *target = NULL, count = PATCH * PATCH * shell->hinge_count;
+    RUGA_TRY(RUGA_NEW(target, count));
+    for (int k = 0; k < count; k++) {
+        const int* side = shell->directors.hinge_triangle[k / (PATCH * PATCH)];
+        int a = shell->patch[side[0]][k / PATCH % PATCH], b = shell->patch[side[1]][k % PATCH];
+        target[k] = block_of(shell, a, b);
+    }
+    ruga_status status = ruga_gather_create(shell->block_start[shell->vertex_count], count, target, result);
     ruga_release(target);
     return status;
 }
 
 static ruga_status set_gathers(ruga_shell* shell) {
     int triangles = shell->triangle_count, hinges = shell->hinge_count;
-    RUGA_TRY(gather_create(shell->vertex_count, 3 * triangles, shell->triangle[0], &shell->vertex_triangle));
-    RUGA_TRY(gather_create(shell->vertex_count, 4 * hinges, shell->hinge[0], &shell->vertex_hinge));
+    RUGA_TRY(
+        ruga_gather_create(shell->vertex_count, 3 * triangles, shell->triangle[0], &shell->vertex_triangle));
+    RUGA_TRY(ruga_gather_create(shell->vertex_count, 4 * hinges, shell->hinge[0], &shell->vertex_hinge));
     RUGA_TRY(block_gather_create(shell, triangles, 3, shell->triangle[0], &shell->block_triangle));
-    return shell->has_directors
-               ? block_gather_create(shell, triangles, PATCH, shell->patch[0], &shell->block_patch)
-               : block_gather_create(shell, hinges, 4, shell->hinge[0], &shell->block_hinge);
+    if (!shell->has_directors) {
+        return block_gather_create(shell, hinges, 4, shell->hinge[0], &shell->block_hinge);
+    }
+    RUGA_TRY(block_gather_create(shell, triangles, PATCH, shell->patch[0], &shell->block_patch));
+    return pair_gather_create(shell, &shell->block_pair);
 }
 
 // ---- Creation
@@ -441,11 +471,6 @@ done:
     return status;
 }
 
-static void gather_clear(gather* g) {
-    ruga_release(g->start);
-    ruga_release(g->item);
-}
-
 void ruga_shell_destroy(ruga_shell** shell) {
     ruga_shell* s = *shell;
     if (!s) {
@@ -459,11 +484,12 @@ void ruga_shell_destroy(ruga_shell** shell) {
     ruga_release(s->vertex_mass);
     ruga_sparse_clear(&s->pattern);
     ruga_release(s->block_start);
-    gather_clear(&s->vertex_triangle);
-    gather_clear(&s->vertex_hinge);
-    gather_clear(&s->block_triangle);
-    gather_clear(&s->block_hinge);
-    gather_clear(&s->block_patch);
+    ruga_gather_clear(&s->vertex_triangle);
+    ruga_gather_clear(&s->vertex_hinge);
+    ruga_gather_clear(&s->block_triangle);
+    ruga_gather_clear(&s->block_hinge);
+    ruga_gather_clear(&s->block_patch);
+    ruga_gather_clear(&s->block_pair);
     ruga_directors_clear(&s->directors);
     ruga_release(s->patch);
     ruga_release(s->hinge_angle);
@@ -571,7 +597,7 @@ static void gather_gradient(int begin, int end, int chunk, void* context) {
     const ruga_shell* shell = p->shell;
     for (int v = begin; v < end; v++) {
         double sum[3] = {0, 0, 0};
-        const gather* from = &shell->vertex_triangle;
+        const ruga_gather* from = &shell->vertex_triangle;
         for (int k = from->start[v]; k < from->start[v + 1]; k++) {
             int item = from->item[k];
             ruga_add_scaled(1, shell->triangle_gradient[item / 3][item % 3], sum);
@@ -653,13 +679,38 @@ static void patch_gradients(int begin, int end, int chunk, void* context) {
     }
 }
 
-// K of directors.c between two rows of gradients.
-static void add_patch_block(const ruga_shell* shell, int f, int row, int column, double sum[9]) {
-    const double(*g)[PATCH][3] = (const double(*)[PATCH][3])shell->patch_gradient[f];
-    for (int i = 0; i < 9; i++) {
-        double k = shell->directors.stiffness[f][i / 3][i % 3];
-        if (k != 0) {
-            add_hinge_block(k, g[i / 3][row], g[i % 3][column], sum);
+// q between a vertex of triangle f's patch and one of triangle g's; the first gives the columns if `turned`.
+static void add_patch_block(double (*q)[3], const double (*f)[PATCH][3], int vertex_f,
+                            const double (*g)[PATCH][3], int vertex_g, bool turned, double sum[9]) {
+    for (int i = 0; i < 3; i++) {
+        double product[3] = {0, 0, 0};
+        for (int j = 0; j < 3; j++) {
+            ruga_add_scaled(q[i][j], g[j][vertex_g], product);
+        }
+        add_hinge_block(1, turned ? product : f[i][vertex_f], turned ? f[i][vertex_f] : product, sum);
+    }
+}
+
+// Q of directors.c within triangles and between neighbours.
+static void add_patch_blocks(const ruga_shell* shell, int block, double sum[9]) {
+    enum { PAIRS = PATCH * PATCH };
+    typedef const double(*patch)[PATCH][3];
+    const ruga_directors* d = &shell->directors;
+    for (int k = shell->block_patch.start[block]; k < shell->block_patch.start[block + 1]; k++) {
+        int f = shell->block_patch.item[k] / PAIRS, pair = shell->block_patch.item[k] % PAIRS;
+        patch g = (patch)shell->patch_gradient[f];
+        add_patch_block(d->stiffness[f], g, pair / PATCH, g, pair % PATCH, false, sum);
+    }
+    for (int k = shell->block_pair.start[block]; k < shell->block_pair.start[block + 1]; k++) {
+        int h = shell->block_pair.item[k] / PAIRS, i = shell->block_pair.item[k] % PAIRS / PATCH;
+        int j = shell->block_pair.item[k] % PATCH, f = d->hinge_triangle[h][0], g = d->hinge_triangle[h][1];
+        patch one = (patch)shell->patch_gradient[f], other = (patch)shell->patch_gradient[g];
+        int a = shell->patch[f][i], b = shell->patch[g][j];
+        if (a >= b) {
+            add_patch_block(d->cross[h], one, i, other, j, false, sum);
+        }
+        if (a <= b) {
+            add_patch_block(d->cross[h], one, i, other, j, true, sum);
         }
     }
 }
@@ -668,7 +719,7 @@ static void gather_hessian(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const pass* p = context;
     const ruga_shell* shell = p->shell;
-    const gather *triangles = &shell->block_triangle, *hinges = &shell->block_hinge;
+    const ruga_gather *triangles = &shell->block_triangle, *hinges = &shell->block_hinge;
     for (int v = begin; v < end; v++) {
         for (int b = shell->block_start[v]; b < shell->block_start[v + 1]; b++) {
             double sum[9] = {0};
@@ -676,11 +727,8 @@ static void gather_hessian(int begin, int end, int chunk, void* context) {
                 int item = triangles->item[k];
                 add_triangle_block(shell->triangle_block[item / 9], item % 9, sum);
             }
-            const gather* patches = &shell->block_patch;
-            for (int k = shell->has_directors ? patches->start[b] : 0;
-                 shell->has_directors && k < patches->start[b + 1]; k++) {
-                int f = patches->item[k] / (PATCH * PATCH), pair = patches->item[k] % (PATCH * PATCH);
-                add_patch_block(shell, f, pair / PATCH, pair % PATCH, sum);
+            if (shell->has_directors) {
+                add_patch_blocks(shell, b, sum);
             }
             for (int k = shell->has_directors ? 0 : hinges->start[b];
                  !shell->has_directors && k < hinges->start[b + 1]; k++) {
