@@ -195,28 +195,20 @@ static void set_matrix(ruga_directors* d) {
     }
 }
 
-// Numbers the vertices that an edge's row reaches: term k of its 2 x 4 x 3 x 4 is corner k % 4 of the hinge
-// at edge k / 4 % 3 of the neighbour k / 12 % 4 of the triangle on side k / 48.
-typedef struct term {
-    int f, g, h, edge, vertex; // g, h: -1 where there is none
-    double block[3][3];
-} term;
-
-enum { TERMS = 2 * 4 * 3 * 4 };
-
-static term term_of(const ruga_directors* d, int h, int k) {
-    term t = {.f = d->hinge_triangle[h][k / 48], .edge = k / 4 % 3, .h = -1};
-    t.g = neighbour(d, t.f, k / 12 % 4, t.block);
-    t.h = t.g < 0 ? -1 : d->triangle_hinge[t.g][t.edge];
-    t.vertex = t.h < 0 ? -1 : d->hinge[t.h][k % 4];
-    return t;
+// An edge's row reaches the edges of its two triangles and of their neighbours: number k of these eight, the
+// neighbour k % 4 of the triangle f on side k / 4; -1 where there is none.
+static int reach(const ruga_directors* d, int h, int k, int* f, double block[3][3]) {
+    *f = d->hinge_triangle[h][k / 4];
+    return neighbour(d, *f, k % 4, block);
 }
 
 // The vertices that an edge's row reaches, each once; returns how many.
 static int edge_vertices(const ruga_directors* d, int h, int vertex[RUGA_DIRECTOR_VERTICES]) {
-    int count = 0;
-    for (int k = 0; k < TERMS; k++) {
-        int v = term_of(d, h, k).vertex, i = 0;
+    int count = 0, f;
+    double block[3][3];
+    for (int k = 0; k < 8 * 12; k++) {
+        int g = reach(d, h, k / 12, &f, block), other = g < 0 ? -1 : d->triangle_hinge[g][k / 4 % 3];
+        int v = other < 0 ? -1 : d->hinge[other][k % 4], i = 0;
         while (v >= 0 && i < count && vertex[i] != v) {
             i++;
         }
@@ -390,22 +382,35 @@ void ruga_directors_settle(ruga_directors* d, const double* angle, double* momen
     }
 }
 
+// Adds the part of edge `h`'s row that comes from triangle g; row: second derivatives by f_e and g's a.
+static void add_coupling(const ruga_directors* d, int h, int g, const double row[3],
+                         double (*const gradient)[4][3], double (*value)[3]) {
+    for (int k = 0; k < 12; k++) {
+        int other = d->triangle_hinge[g][k / 4], i = 0;
+        if (other < 0) {
+            continue;
+        }
+        double part = row[k / 4] * d->weight[other][d->hinge_triangle[other][0] != g];
+        while (d->slot_vertex[h][i] != d->hinge[other][k % 4]) {
+            i++;
+        }
+        ruga_add_scaled(part, gradient[other][k % 4], value[d->slot[h][i]]);
+    }
+}
+
 // d2E/df_e dx = sum over the edge's triangles and their neighbours of +-Q_ej w_j grad t_j.
 void ruga_directors_coupling(const ruga_directors* d, double (*const gradient)[4][3], double (*value)[3]) {
     memset(value, 0, (size_t)d->start[d->vertex_count] * sizeof *value);
     for (int h = 0; h < d->hinge_count; h++) {
-        for (int k = 0; k < TERMS; k++) {
-            term t = term_of(d, h, k);
-            if (t.h < 0) {
+        for (int k = 0; k < 8; k++) {
+            double block[3][3], sign = k < 4 ? 1 : -1;
+            int f, g = reach(d, h, k, &f, block);
+            if (g < 0) {
                 continue;
             }
-            double part =
-                d->weight[t.h][d->hinge_triangle[t.h][0] != t.g] * t.block[local_edge(d, t.f, h)][t.edge];
-            int i = 0;
-            while (d->slot_vertex[h][i] != t.vertex) {
-                i++;
-            }
-            ruga_add_scaled(k < TERMS / 2 ? part : -part, gradient[t.h][k % 4], value[d->slot[h][i]]);
+            const double* of = block[local_edge(d, f, h)];
+            const double row[3] = {sign * of[0], sign * of[1], sign * of[2]};
+            add_coupling(d, h, g, row, gradient, value);
         }
     }
 }

@@ -123,6 +123,11 @@ static void explain(ruga_validation* v) {
         "Buckling by twist: Prandtl's strip is narrow; here its width is a twentieth of its length. At a "
         "tenth, "
         "warping that the clamp holds adds 3.8 %% (tip load) and 5.7 %% (weight), the same on both meshes.");
+    ruga_validation_note(v, "Buckling: a frame that did not end in a minimum is one next to the load of "
+                            "onset, where the strip swings far "
+                            "over almost without a change of energy, and the 400 iterations of a frame do "
+                            "not bring it to rest (residual "
+                            "1e-4).");
     ruga_validation_note(v, "A clamp is two rows of held vertices, the outer one a hundredth of a cell away: "
                             "a hinge or director at a "
                             "clamped edge stands for half a cell, and not for half of a held one as well.");
