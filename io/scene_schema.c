@@ -97,7 +97,7 @@ const ruga_key ruga_keys[] = {
            "Bending energy. hinge: an angle at each edge, as the 2013 paper; exact for cylinders on equilateral "
            "triangles, but 5 to 20 % too stiff on irregular ones, and with Poisson's ratio -1/3 whatever "
            "`poisson`. kirchhoff-love: directors at the middles of edges, right on any mesh and for any curvature, "
-           "at about three times the time."),
+           "at three to four times the time."),
     NUMBERS("skin.growth", 2, MODEL(skin.growth), "1", "[1, 1]", POSITIVE,
             "Rest lengths along and across the skin's first direction are multiplied by these."),
     CHOICE(

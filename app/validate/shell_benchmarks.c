@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "solver/state.h"
+#include "view/render.h"
 
 #include <math.h>
 #include <string.h>
@@ -476,6 +477,172 @@ done:
     return status;
 }
 
+// ---- a sheet under tension that is pushed together across it ---------------------------------------------
+
+// Length 1, tension T = 0.002 E h along x, nu = 0 (so that it contracts nothing by itself), all sides
+// supported (w = 0), pushed together along y: a wave of wavenumbers pi/L and k buckles at N k^2 = B (k^2 +
+// (pi/L)^2)^2 + T (pi/L)^2. The least N has k^4 = (pi/L)^4 + (T/B) (pi/L)^2: lambda = 2 sqrt(pi) (B/T)^(1/4)
+// L^(1/2), but for (lambda / 2 L)^4 /
+// 4. The thickness makes that L/3, the width is four of it. T edge^2 / 48 (see below) is 5 % of B at 40.
+static const double PUSHED_YOUNG = 1e9, PUSHED_STRAIN = 0.002, PUSHED_MOST = 2;
+enum { PUSHED_FRAMES = 7, PUSHED_HALF_WAVES = 8, PUSHED_EARLY = 6 };
+
+typedef struct pushed {
+    double thickness, bending, tension; // h, B, T
+    double wavenumber, width, critical; // k; N
+} pushed;
+
+static pushed pushed_sheet(void) {
+    double root = pow(1 / (6 * sqrt(RUGA_PI)), 4), kx = RUGA_PI; // B/T
+    pushed p = {.thickness = sqrt(12 * PUSHED_STRAIN * root)};
+    p.tension = PUSHED_STRAIN * PUSHED_YOUNG * p.thickness;
+    p.bending = root * p.tension;
+    double k2 = sqrt(pow(kx, 4) + kx * kx / root);
+    p.wavenumber = sqrt(k2);
+    p.width = PUSHED_HALF_WAVES * RUGA_PI / p.wavenumber;
+    p.critical = (p.bending * (k2 + kx * kx) * (k2 + kx * kx) + p.tension * kx * kx) / k2;
+    return p;
+}
+
+static void map_pushed(double u, double v, double x[3]) {
+    x[0] = u;
+    x[1] = pushed_sheet().width * (v - 0.5);
+    x[2] = 0;
+}
+
+// Beyond onset, w = a(x) cos(k y) with sides that stay straight: across, the stress is what the contraction
+// leaves over from the wave's own length, N(x) = N - E h k^2 a^2 / 4, so that
+//     T' a'' + (N - N_c) k^2 a + T' (pi/L)^2 a - (E h k^4 / 4) a^3 = 0,    T' = T + 2 B k^2,    a(0) = a(L) =
+//     0,
+// Duffing's equation: alpha = (N - N_c) k^2 / T' + (pi/L)^2, beta = E h k^4 / (4 T'), q = beta A^2 / alpha,
+//     L = 2 / sqrt(alpha) int_0^(pi/2) dt / sqrt(1 - q (1 + sin^2 t) / 2),    a = A sin t.
+// Returns sqrt(2 <a^2>), which is A where a is a sine.
+static double pushed_amplitude(double load) {
+    enum { STEPS = 2000, HALVINGS = 60 };
+    pushed p = pushed_sheet();
+    double k2 = p.wavenumber * p.wavenumber, tension = p.tension + 2 * p.bending * k2;
+    double alpha = (load - 1) * p.critical * k2 / tension + RUGA_PI * RUGA_PI;
+    double beta = PUSHED_YOUNG * p.thickness * k2 * k2 / (4 * tension), low = 0, high = 1, square = 0;
+    for (int i = 0; i < HALVINGS; i++) {
+        double q = 0.5 * (low + high), length = 0, sum = 0;
+        for (int j = 0; j < STEPS; j++) {
+            double sine = sin((j + 0.5) * RUGA_PI / (2 * STEPS)), s2 = sine * sine;
+            double dx = RUGA_PI / STEPS / sqrt(alpha * (1 - q * (1 + s2) / 2));
+            length += dx;
+            sum += s2 * dx;
+        }
+        square = q * alpha / beta * sum / length;
+        *(length < 1 ? &low : &high) = q;
+    }
+    return sqrt(2 * square);
+}
+
+// Amplitude 2 sqrt(<w^2>) and wavelength across 2 pi sqrt(int w^2 / int (dw/dy)^2), 0 where it is flat.
+static void measure_waves(const bench* b, int frame, double* amplitude, double* wavelength) {
+    double area = 0, square = 0, slope = 0;
+    for (int f = 0; f < b->patch.mesh.triangle_count; f++) {
+        const int* t = b->patch.mesh.triangle + 3 * (size_t)f;
+        const double *X[3], *x = frame_of(b, frame);
+        for (int i = 0; i < 3; i++) {
+            X[i] = b->patch.mesh.position + 3 * (size_t)t[i];
+        }
+        double part =
+            0.5 * fabs((X[1][0] - X[0][0]) * (X[2][1] - X[0][1]) - (X[2][0] - X[0][0]) * (X[1][1] - X[0][1]));
+        double w[3] = {x[3 * t[0] + 2], x[3 * t[1] + 2], x[3 * t[2] + 2]};
+        double along =
+            ((X[1][0] - X[0][0]) * (w[2] - w[0]) - (X[2][0] - X[0][0]) * (w[1] - w[0])) / (2 * part);
+        area += part;
+        square += part * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) / 3;
+        slope += part * along * along;
+    }
+    *amplitude = 2 * sqrt(square / area);
+    *wavelength = slope > 0 ? 2 * RUGA_PI * sqrt(square / slope) : 0;
+}
+
+// Zero of the line through the squares of the first two amplitudes beyond onset.
+static double pushed_onset(const bench* b, double thickness) {
+    double before = 0, x_before = 0;
+    for (int k = 1; k <= b->def.frames; k++) {
+        double a, x = PUSHED_MOST * k / b->def.frames, wavelength;
+        measure_waves(b, k, &a, &wavelength);
+        if (before > 0) {
+            return x_before - before * (x - x_before) / (a * a - before);
+        }
+        if (a > 0.02 * thickness) {
+            before = a * a;
+            x_before = x;
+        }
+    }
+    return 0;
+}
+
+static ruga_status draw_sheet(const bench* b, const char* path) {
+    const double* x = frame_of(b, b->def.frames);
+    double* height = NULL;
+    ruga_render_def def = ruga_default_render_def();
+    RUGA_TRY(RUGA_NEW(height, b->patch.mesh.vertex_count));
+    for (int v = 0; v < b->patch.mesh.vertex_count; v++) {
+        height[v] = x[3 * (size_t)v + 2];
+        def.scalar_max = fmax(def.scalar_max, fabs(height[v]));
+    }
+    def.width = 700;
+    def.height = 500;
+    def.elevation = 60 * RUGA_PI / 180;
+    def.scalar = height;
+    def.scalar_min = -def.scalar_max;
+    ruga_status status = ruga_render_png(&b->patch.mesh, x, &def, path);
+    ruga_release(height);
+    return status;
+}
+
+static ruga_status run_pushed(const shell_run* run, double* value, int* bad) {
+    pushed p = pushed_sheet();
+    int across = run->level * 9 / 5;
+    shell_patch_def patch = {.across = across,
+                             .along = rows_for(p.width, 1, across, 2),
+                             .irregular = run->irregular,
+                             .map = map_pushed};
+    bench b;
+    ruga_status status = RUGA_OK;
+    int* ends = NULL;
+    RUGA_TRY_DONE(bench_create(run, &patch, p.thickness, PUSHED_YOUNG, 0, PUSHED_FRAMES, &b));
+    int rows = b.patch.row_count;
+    RUGA_TRY_DONE(RUGA_NEW(ends, 2 * (size_t)rows));
+    for (int r = 0; r < rows; r++) {
+        ends[r] = b.patch.row[r];
+        ends[rows + r] = b.patch.row[r + 1] - 1;
+    }
+    fix_axes(&b, 0, rows, true, false, true);
+    b.handle[0].region.vertices = ends;
+    fix_axes(&b, 0, rows, false, false, true);
+    b.handle[1].region.vertices = ends + rows;
+    ruga_handle_def* pull = add_handle(&b, RUGA_HANDLE_LINE_FORCE, 0, rows);
+    pull->region.vertices = ends + rows;
+    pull->force[0] = p.tension;
+    pull->ramped = false;
+    for (int side = 0; side < 2; side++) {
+        int row = side ? rows - 1 : 0;
+        ruga_handle_def* push = add_rows(&b, RUGA_HANDLE_MOVE, row, row + 1);
+        push->axes[0] = push->axes[2] = false;
+        push->translate[1] =
+            (side ? -0.5 : 0.5) * PUSHED_MOST * p.critical / (PUSHED_YOUNG * p.thickness) * p.width;
+        fix_axes(&b, b.patch.row[row] + 1, b.patch.row[row + 1] - 1, false, false, true);
+    }
+    RUGA_TRY_DONE(bench_run(&b, bad));
+    value[0] = pushed_onset(&b, p.thickness);
+    measure_waves(&b, PUSHED_EARLY, &value[2], &value[1]);
+    measure_waves(&b, PUSHED_FRAMES, &value[4], &value[3]);
+    value[2] /= pushed_amplitude(PUSHED_MOST * PUSHED_EARLY / PUSHED_FRAMES);
+    value[4] /= pushed_amplitude(PUSHED_MOST);
+    if (run->picture) {
+        RUGA_TRY_DONE(draw_sheet(&b, run->picture));
+    }
+done:
+    ruga_release(ends);
+    bench_clear(&b);
+    return status;
+}
+
 // ---- the list ------------------------------------------------------------------------------------------
 
 const shell_benchmark shell_benchmarks[] = {
@@ -483,6 +650,8 @@ const shell_benchmark shell_benchmarks[] = {
      "Sze, Liu and Lo 2004; elastica",
      true,
      false,
+     false,
+     NULL,
      0.03,
      2,
      {"-U", "W"},
@@ -492,6 +661,8 @@ const shell_benchmark shell_benchmarks[] = {
      "Sze, Liu and Lo 2004",
      false,
      false,
+     false,
+     NULL,
      0.03,
      4,
      {"W_A at P/2", "W_B at P/2", "W_A at P", "W_B at P"},
@@ -501,6 +672,8 @@ const shell_benchmark shell_benchmarks[] = {
      "elastica; Romero et al. 2021",
      true,
      false,
+     false,
+     NULL,
      0.03,
      3,
      {"H/W at 10", "H/W at 30", "H/W at 100"},
@@ -510,6 +683,8 @@ const shell_benchmark shell_benchmarks[] = {
      "Prandtl 1899",
      false,
      false,
+     false,
+     NULL,
      0.03,
      1,
      {"P L^2 / sqrt(EI GJ)"},
@@ -519,6 +694,8 @@ const shell_benchmark shell_benchmarks[] = {
      "Prandtl 1899",
      false,
      false,
+     false,
+     NULL,
      0.03,
      1,
      {"q L^3 / sqrt(EI GJ)"},
@@ -528,16 +705,30 @@ const shell_benchmark shell_benchmarks[] = {
      "closed form",
      false,
      false,
+     false,
+     NULL,
      0.03,
      2,
      {"energy / (D/2 kappa^2 A)", "height / R"},
      {1, 1},
      run_roll},
-    {"Scordelis-Lo roof", "MacNeal and Harder 1985", false, false, 0.03, 1, {"sag"}, {0.3024}, run_roof},
+    {"Scordelis-Lo roof",
+     "MacNeal and Harder 1985",
+     false,
+     false,
+     false,
+     NULL,
+     0.03,
+     1,
+     {"sag"},
+     {0.3024},
+     run_roof},
     {"pinched cylinder",
      "Belytschko et al. 1985",
      false,
      false,
+     false,
+     NULL,
      0.03,
      1,
      {"deflection"},
@@ -547,16 +738,32 @@ const shell_benchmark shell_benchmarks[] = {
      "Simo, Fox and Rifai 1989",
      true,
      false,
+     false,
+     NULL,
      0.03,
      1,
      {"deflection"},
      {0.0935},
      run_hemisphere},
+    {"pushed sheet",
+     "Cerda and Mahadevan 2003",
+     false,
+     false,
+     true,
+     "The pushed sheet at twice the load of onset, irregular mesh, kirchhoff-love",
+     0.05,
+     5,
+     {"N / N_c at onset", "wavelength at 1.7 N_c, m", "amplitude at 1.7 N_c / closed form",
+      "wavelength at 2 N_c, m", "amplitude at 2 N_c / closed form"},
+     {1, 1.0 / 3, 1, 1.0 / 3, 1},
+     run_pushed},
     // (B/T)^(1/4) with B/T = h^2 / (12 (1 - nu^2) strain)
     {"stretched sheet",
      "Cerda and Mahadevan 2003",
      false,
      true,
+     false,
+     NULL,
      0.10,
      2,
      {"wavelength at 1 %, m", "wavelength at 2 %, m"},

@@ -11,6 +11,7 @@ typedef struct shell_run {
     int level; // elements per side
     bool irregular;
     ruga_bending bending;
+    const char* picture; // where to draw what has one; NULL for nowhere
 } shell_run;
 
 enum { SHELL_VALUES = 6 };
@@ -19,7 +20,9 @@ typedef struct shell_benchmark {
     const char* name;
     const char* source;
     bool quick;   // takes seconds
-    bool aligned; // only a regular mesh can show it
+    bool aligned; // only a regular mesh shows anything: recorded
+    bool judged_on_both;
+    const char* picture; // its caption; NULL without
     double tolerance;
     int value_count;
     const char* quantity[SHELL_VALUES];
