@@ -474,13 +474,14 @@ static void a_sheet_without_interior_sags_under_its_weight(void** state) {
     scene_free(&s);
 }
 
-// Both ways, a skin of directors comes to the same rest as one of hinges where nothing bends much, and converges.
+// Both ways, a skin of directors comes to the same rest as one of hinges where nothing bends much, and converges:
+// 1.5 % of compression is below the 2.4 % at which this skin wrinkles.
 static void a_skin_of_directors_is_solved_with_its_interior(void** state) {
     (void)state;
     double middle[2] = {0, 0};
     for (int kind = 0; kind < 2; kind++) {
         small_scene s;
-        scene_bar(&s, -3e-3, 1, 8e-3);
+        scene_bar(&s, -1.5e-3, 1, 8e-3);
         s.def.skin.bending = kind ? RUGA_BENDING_KIRCHHOFF_LOVE : RUGA_BENDING_HINGE;
         scene_build(&s);
         ruga_report report;
@@ -494,7 +495,7 @@ static void a_skin_of_directors_is_solved_with_its_interior(void** state) {
                       report.energy_bending, report.newton_iterations);
         scene_free(&s);
     }
-    assert_near(middle[1], middle[0], 2e-4);
+    assert_near(middle[1], middle[0], 2e-5);
 }
 
 // With an argument: only the tests whose name matches it.

@@ -148,9 +148,7 @@ static ruga_status run(ruga_validation* v) {
     ruga_validation_file(v, "points.csv", "All points: both models and theory.", path);
     RUGA_TRY(ruga_writer_open(path, &writer));
     (void)fputs(
-        "ratio,poisson,thickness,wavelength_theory,critical_theory,wavelength_volume,wavelength_shell,"
-        "onset_volume,onset_shell,amplitude15_volume,amplitude15_shell,amplitude25_volume,amplitude25_"
-        "shell\n",
+        "ratio,poisson,thickness,wavelength_theory,critical_theory,wavelength_volume,wavelength_shell,onset_volume,onset_shell,amplitude15_volume,amplitude15_shell,amplitude25_volume,amplitude25_shell\n",
         writer.file);
     ruga_status status = RUGA_OK;
     for (int i = 0; i < count && status == RUGA_OK; i++) {
@@ -163,19 +161,18 @@ static ruga_status run(ruga_validation* v) {
         RUGA_TRY(show_convergence(v));
     }
     ruga_validation_note(
-        v, "Onsets are recorded, not judged: the volume's film is bonded to its bed, which resists "
-           "sliding as well, while the foundation of the embedded shell is that of a bed that "
-           "carries no shear at the interface. Theory then expects a bonded film 6 to 8 %% later at "
-           "nu = 0.3 and none of it at nu = 0.5; what the volume adds at small E_x/E_q is the large "
-           "compression of the bed itself.");
+        v, "Onsets are recorded, not judged: the volume's film is bonded to its bed, which resists sliding "
+           "as well, while the foundation of the embedded shell is that of a bed that carries no shear at "
+           "the interface. Theory then expects a bonded film 6 to 8 %% later at nu = 0.3 and none of it at "
+           "nu = 0.5; what the volume adds at small E_x/E_q is the large compression of the bed itself.");
     if (!quick) {
         ruga_validation_note(
             v,
-            "At E_x/E_q = 30 the film wrinkles at 5 to 6 %% of strain and the bed is compressed by up to "
-            "15 %%, so that terms of the order of the strain show: in the volume alone, changing the law "
-            "from fixed corotational to St. Venant-Kirchhoff moves the wavelength there from 1.03 to 0.96 "
-            "of eq. 3. At multiples of its own onset a film's amplitude, (lambda/pi) sqrt(eps - eps_c), "
-            "hangs on lambda^2 eps_c, and so on bending over membrane stiffness alone and not on the bed. A "
+            "At E_x/E_q = 30 the film wrinkles at 5 to 6 %% of strain and the bed is compressed by up to 15 "
+            "%%, so that terms of the order of the strain show: in the volume alone, changing the law from "
+            "fixed corotational to St. Venant-Kirchhoff moves the wavelength there from 1.03 to 0.96 of eq. "
+            "3. At multiples of its own onset a film's amplitude, (lambda/pi) sqrt(eps - eps_c), hangs on "
+            "lambda^2 eps_c, and so on bending over membrane stiffness alone and not on the bed. A "
             "compressed film gets thicker, which raises that ratio; the shell's hinges follow it "
             "(docs/method.md). With a constant thickness they are 10 to 11 %% low here.");
     }
@@ -187,14 +184,11 @@ const ruga_validation_case ruga_validate_volume = {
     .title = "The embedded shell against a dense volume (figure 6)",
     .about =
         "Plane strain. Shell: 24 wavelengths (12 where quick), default coupling, prescribed interior, y of "
-        "the skin held. Volume: "
-        "quadratic B-splines, two cells through the skin, a cell of half a wave between planes of symmetry "
-        "and "
-        "two wavelengths deep, its wavelength that of the least load (found by the inertia of the exact "
-        "Hessian). Both onsets are zeros of a line fitted to amplitude^2 over 1.1 to 1.6 critical strains, "
-        "Allen's for the shell and the volume's own for the volume; amplitudes are compared at multiples of "
-        "each "
-        "model's own onset.",
+        "the skin held. Volume: quadratic B-splines, two cells through the skin, a cell of half a wave "
+        "between planes of symmetry and two wavelengths deep, its wavelength that of the least load (found "
+        "by the inertia of the exact Hessian). Both onsets are zeros of a line fitted to amplitude^2 over "
+        "1.1 to 1.6 critical strains, Allen's for the shell and the volume's own for the volume; amplitudes "
+        "are compared at multiples of each model's own onset.",
     .quick = true,
     .run = run,
 };
