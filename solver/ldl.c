@@ -204,7 +204,7 @@ ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, si
     if (*memory && count <= *capacity) {
         return RUGA_OK;
     }
-    size_t wanted = count > *capacity + *capacity / 8 ? count : *capacity + *capacity / 8;
+    size_t wanted = count > *capacity + *capacity / 32 ? count : *capacity + *capacity / 32;
     void* grown = ruga_reallocate(*memory, wanted * size);
     if (!grown) {
         return ruga_fail(RUGA_NO_MEMORY, "out of memory: the factor needs %zu MB more",
@@ -222,7 +222,7 @@ typedef struct assembly {
     int s, own, late, below; // pivots of its own, delayed ones of children, rows that stay
     ruga_front front;
     size_t base;    // of the stack, under the children's updates
-    double* update; // [below]^2
+    double* update;
 } assembly;
 
 static double* delayed_of(const ruga_ldl* f, int c, const double** update, int* late, int* below) {
@@ -231,7 +231,7 @@ static double* delayed_of(const ruga_ldl* f, int c, const double** update, int* 
     *update = begin;
     *below = r->rows - r->full;
     *late = r->full - r->eliminated;
-    return begin + (size_t)*below * (size_t)*below;
+    return begin + ruga_update_size(*below);
 }
 
 static ruga_status reserve_front(assembly* a) {
@@ -248,7 +248,7 @@ static ruga_status reserve_front(assembly* a) {
     a->own = s->pivot[a->s + 1] - s->pivot[a->s];
     a->below = (int)(s->row_start[a->s + 1] - s->row_start[a->s]);
     size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below;
-    size_t update = (size_t)a->below * (size_t)a->below;
+    size_t update = ruga_update_size(a->below);
     RUGA_TRY(ruga_ldl_make_room((void**)&m->factor, &m->factor_capacity, m->factor_used + full * (rows + 2),
                        sizeof(double)));
     RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used + rows, sizeof(int)));
@@ -295,7 +295,7 @@ static void add_update(assembly* a, const int* place, int below, const double* u
         split++;
     }
     for (int j = 0; j < below; j++) {
-        const double* from = update + (size_t)j * (size_t)below;
+        const double* from = update + ruga_update_column(below, j);
         if (j < split) {
             double* to = a->front.a + (size_t)place[j] * (size_t)a->front.rows;
             a->front.peak[place[j]] += fabs(from[j]);
@@ -306,7 +306,7 @@ static void add_update(assembly* a, const int* place, int below, const double* u
                 to[place[i] + a->late] += from[i];
             }
         } else {
-            double* to = a->update + (size_t)(place[j] - a->own) * (size_t)a->below;
+            double* to = a->update + ruga_update_column(a->below, place[j] - a->own);
             for (int i = j; i < below; i++) {
                 to[place[i] - a->own] += from[i];
             }
@@ -378,7 +378,7 @@ static ruga_status store_front(assembly* a) {
     task_memory* m = a->memory;
     const ruga_front* f = &a->front;
     front_record* record = &a->ldl->front[a->s];
-    size_t update = (size_t)a->below * (size_t)a->below, rows = (size_t)f->rows;
+    size_t update = ruga_update_size(a->below), rows = (size_t)f->rows;
     size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, height = rows - done;
     memmove(m->stack + a->base, a->update, update * sizeof(double));
     size_t used = a->base + update + late * (height + 1);
@@ -470,7 +470,7 @@ static ruga_status plan_tasks(ruga_ldl* f) {
     for (int k = 0; k < s->count; k++) {
         task_memory* m = &f->memory[f->front[k].task];
         size_t own = (size_t)(s->pivot[k + 1] - s->pivot[k]), base = m->stack_used;
-        size_t below = s->row_start[k + 1] - s->row_start[k], update = below * below;
+        size_t below = s->row_start[k + 1] - s->row_start[k], update = ruga_update_size((int)below);
         for (int c = f->child[k]; c >= 0; c = f->sibling[c]) {
             if (f->front[c].task == f->front[k].task && f->front[c].update < base) {
                 base = f->front[c].update;

@@ -8,6 +8,8 @@
 
 #include "solver/linear.h"
 
+#include <stddef.h>
+
 // Unknowns are numbered by their step of elimination. Supernode s eliminates steps [pivot[s], pivot[s + 1]),
 // parents after children, each subtree contiguous. Its front holds these pivots and the rows below:
 // row[row_start[s] .. row_start[s + 1]), ascending steps.
@@ -54,7 +56,19 @@ typedef struct ruga_front {
 // Eliminates as many of the fully summed columns as stable pivots are found for.
 void ruga_front_factor(ruga_front* front);
 
-// update -= L2 D L2^T, lower triangle of [rows - full]^2, columns [begin, end), with `work` as in the front.
+// Update matrices [rows]^2 keep their lower triangle in tiles of columns, each without the rows above its
+// first: column j has its row i at ruga_update_column(rows, j) + i. Half the memory of a square.
+static inline size_t ruga_update_size(int rows) {
+    size_t n = (size_t)rows, tiles = n / RUGA_FRONT_TILE, rest = n % RUGA_FRONT_TILE;
+    return RUGA_FRONT_TILE * (tiles * n - RUGA_FRONT_TILE * tiles * (tiles - (tiles > 0)) / 2) + rest * rest;
+}
+static inline ptrdiff_t ruga_update_column(int rows, int column) {
+    ptrdiff_t n = rows, k = column / RUGA_FRONT_TILE, first = k * RUGA_FRONT_TILE;
+    ptrdiff_t tile = RUGA_FRONT_TILE * (k * n - RUGA_FRONT_TILE * k * (k - 1) / 2);
+    return tile + (column - first) * (n - first) - first;
+}
+
+// update -= L2 D L2^T, columns [begin, end), with `work` as in the front; begin is the first of a tile.
 void ruga_front_update(const ruga_front* front, int begin, int end, double* work, double* update);
 
 // Storage of a task. Places in it are kept as offsets, since it moves when delayed pivots make it grow.
@@ -63,7 +77,7 @@ typedef struct task_memory {
     size_t factor_used, factor_capacity;
     int* index; // per front: steps of its rows, pivots first
     size_t index_used, index_capacity;
-    double* stack; // per front: update [below]^2, delayed [late][late + below], peak [late]
+    double* stack; // per front: update of `below` rows, delayed [late][late + below], peak [late]
     size_t stack_used, stack_peak, stack_capacity;
     double* work; // pivots and peaks of one front, tile of L D
     size_t work_capacity;
@@ -104,7 +118,7 @@ typedef struct ruga_ldl {
 ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start, const bool* last,
                             ruga_ldl** ldl);
 void ruga_ldl_destroy(ruga_ldl** ldl);
-// Room for `count` elements of `size` bytes; what grows, grows by an eighth at least.
+// Room for `count` elements of `size` bytes; what grows, grows by 3 % at least.
 ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, size_t size);
 ruga_status ruga_ldl_numeric(ruga_ldl* ldl, const double* values, ruga_factor_info* info);
 ruga_status ruga_ldl_solve(ruga_ldl* ldl, const double* b, double* x);

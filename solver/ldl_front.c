@@ -269,6 +269,7 @@ void ruga_front_update(const ruga_front* f, int begin, int end, double* work, do
         int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
         multiply_pivots(f, f->full + t, f->full + stop, 0, f->eliminated, work);
         cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - t, stop - t, f->eliminated, -1,
-                    at(f, f->full + t, 0), f->rows, work, stop - t, 1, update + (size_t)t * rows + t, rows);
+                    at(f, f->full + t, 0), f->rows, work, stop - t, 1, update + ruga_update_column(rows, t) + t,
+                    rows - t);
     }
 }
