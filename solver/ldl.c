@@ -221,7 +221,7 @@ typedef struct assembly {
     task_memory* memory;
     int s, own, late, below; // pivots of its own, delayed ones of children, rows that stay
     ruga_front front;
-    size_t base;    // of the stack, under the children's updates
+    size_t base; // of the stack, under the children's updates
     double* update;
 } assembly;
 
@@ -250,13 +250,14 @@ static ruga_status reserve_front(assembly* a) {
     size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below;
     size_t update = ruga_update_size(a->below);
     RUGA_TRY(ruga_ldl_make_room((void**)&m->factor, &m->factor_capacity, m->factor_used + full * (rows + 2),
-                       sizeof(double)));
+                                sizeof(double)));
     RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used + rows, sizeof(int)));
-    RUGA_TRY(ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, m->stack_used + update, sizeof(double)));
-    size_t tiles = s->top[a->s] ? (size_t)ruga_chunk_count(a->below, RUGA_FRONT_TILE) : 1;
-    tiles = tiles ? tiles : 1;
     RUGA_TRY(
-        ruga_ldl_make_room((void**)&m->work, &m->work_capacity, (tiles * RUGA_FRONT_TILE + 3) * full, sizeof(double)));
+        ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, m->stack_used + update, sizeof(double)));
+    size_t tiles = s->top[a->s] && a->below ? (size_t)ruga_chunk_count(a->below, RUGA_FRONT_TILE) : 1;
+    size_t work = tiles * RUGA_FRONT_TILE * full, shared = ruga_front_shared_work((int)full);
+    work = 3 * full + (s->top[a->s] && shared > work ? shared : work);
+    RUGA_TRY(ruga_ldl_make_room((void**)&m->work, &m->work_capacity, work, sizeof(double)));
     a->update = m->stack + m->stack_used;
     a->front = (ruga_front){.rows = (int)rows, .full = (int)full};
     a->front.a = m->factor + m->factor_used;
@@ -264,6 +265,7 @@ static ruga_status reserve_front(assembly* a) {
     a->front.pivot = m->work;
     a->front.peak = m->work + 2 * full;
     a->front.work = m->work + 3 * full;
+    a->front.shared = s->top[a->s];
     a->front.must_finish = s->parent[a->s] < 0;
     memset(a->front.a, 0, full * rows * sizeof(double));
     memset(a->update, 0, update * sizeof(double));

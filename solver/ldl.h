@@ -48,10 +48,17 @@ typedef struct ruga_front {
     int* index;       // [rows] step of each row, permuted along with them
     double* pivot;    // [full][2] D: (d, 0), or (d11, d21), (d22, 0)
     double* peak;     // [full] the largest size that the diagonal entry ever had: the measure of round-off
-    double* work;     // [RUGA_FRONT_TILE * full]
+    double* work;     // [RUGA_FRONT_TILE * full], shared: also [ruga_front_shared_work(full)]
+    bool shared;      // at the top: tiles are shared out to threads
     bool must_finish; // a root: no parent takes pivots that are not stable
     int eliminated, positive, negative, zero;
 } ruga_front;
+
+// Pivots are taken in blocks; tiles of columns that wait for a block have a work space each.
+enum { RUGA_FRONT_BLOCK = 64 };
+static inline size_t ruga_front_shared_work(int full) {
+    return (size_t)(full / RUGA_FRONT_TILE + 1) * RUGA_FRONT_TILE * RUGA_FRONT_BLOCK;
+}
 
 // Eliminates as many of the fully summed columns as stable pivots are found for.
 void ruga_front_factor(ruga_front* front);
