@@ -100,6 +100,13 @@ ruga_status ruga_factor_solve(ruga_factor* factor, const double* b, double* x) {
                                                 : ruga_ldl_solve(factor->ldl, b, x);
 }
 
+ruga_status ruga_factor_solve_rough(ruga_factor* factor, const double* b, double* x) {
+    if (factor->kind == RUGA_FACTOR_CHOLESKY || factor->pattern.columns == 0) {
+        return ruga_factor_solve(factor, b, x);
+    }
+    return ruga_ldl_solve_rough(factor->ldl, b, x);
+}
+
 ruga_status ruga_factor_solve_absolute(ruga_factor* factor, const double* b, double* x) {
     RUGA_ASSERT(factor->kind == RUGA_FACTOR_LDL);
     return factor->pattern.columns == 0 ? RUGA_OK : ruga_ldl_solve_absolute(factor->ldl, b, x);

@@ -19,43 +19,6 @@
 #include <math.h>
 #include <string.h>
 
-// Storage of a task. Places in it are kept as offsets, since it moves when delayed pivots make it grow.
-typedef struct task_memory {
-    double* factor; // per front: panel [eliminated][rows], then D^-1 [eliminated][2]
-    size_t factor_used, factor_capacity;
-    int* index; // per front: steps of its rows, pivots first
-    size_t index_used, index_capacity;
-    double* stack; // per front: update [below]^2, delayed [late][late + below], peak [late]
-    size_t stack_used, stack_peak, stack_capacity;
-    double* work; // pivots and peaks of one front, tile of L D
-    size_t work_capacity;
-    int positive, negative, zero;
-    double entries, flops;
-    ruga_status status;
-} task_memory;
-
-typedef struct front_record {
-    size_t factor, index, update; // offsets in its task's memory
-    int task, rows, full, eliminated;
-} front_record;
-
-struct ruga_ldl {
-    ruga_ldl_symbolic symbolic;
-    ruga_sparse matrix;  // the caller's pattern, with our values: S A S
-    bool* last;          // [n] unknowns of multiplier nodes
-    double* scale;       // [n] S
-    int* child;          // [count] first child of a supernode, -1 = none
-    int* sibling;        // [count]
-    front_record* front; // [count]
-    task_memory* memory; // [task_count + 1], the last one for the top
-    bool planned, ready;
-    int widest;             // rows of the largest front
-    double *load, *answer;  // [n] by step
-    double *defect, *guess; // [n] scaled, by unknown
-    double* gather;         // [gather_capacity >= widest]
-    int gather_capacity;
-};
-
 void ruga_ldl_destroy(ruga_ldl** ldl) {
     ruga_ldl* f = *ldl;
     if (!f) {
@@ -66,6 +29,7 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
         ruga_release(f->memory[t].index);
         ruga_release(f->memory[t].stack);
         ruga_release(f->memory[t].work);
+        ruga_release(f->memory[t].single);
     }
     ruga_release(f->memory);
     ruga_ldl_symbolic_clear(&f->symbolic);
@@ -79,6 +43,9 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
     ruga_release(f->answer);
     ruga_release(f->defect);
     ruga_release(f->guess);
+    ruga_release(f->top_place);
+    ruga_release(f->top_step);
+    ruga_release(f->handed_up);
     ruga_release(f->gather);
     ruga_release(f);
     *ldl = NULL;
@@ -116,6 +83,22 @@ static void list_children(ruga_ldl* f) {
     }
 }
 
+static ruga_status number_top_steps(ruga_ldl* f) {
+    const ruga_ldl_symbolic* s = &f->symbolic;
+    for (int k = 0; k < s->count; k++) {
+        for (int i = s->pivot[k]; i < s->pivot[k + 1]; i++) {
+            f->top_place[i] = s->top[k] ? f->top_count++ : -1;
+        }
+    }
+    RUGA_TRY(RUGA_NEW(f->top_step, f->top_count));
+    for (int i = 0; i < s->n; i++) {
+        if (f->top_place[i] >= 0) {
+            f->top_step[f->top_place[i]] = i;
+        }
+    }
+    return RUGA_NEW(f->handed_up, (size_t)s->task_count * (size_t)f->top_count);
+}
+
 ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start, const bool* last,
                             ruga_ldl** ldl) {
     ruga_status status = RUGA_OK;
@@ -137,6 +120,8 @@ ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int*
     RUGA_TRY_DONE(RUGA_NEW(f->answer, n));
     RUGA_TRY_DONE(RUGA_NEW(f->defect, n));
     RUGA_TRY_DONE(RUGA_NEW(f->guess, n));
+    RUGA_TRY_DONE(RUGA_NEW(f->top_place, n));
+    RUGA_TRY_DONE(number_top_steps(f));
     mark_last(f, node_start ? node_count : n, node_start, last);
     list_children(f);
     *ldl = f;
@@ -152,11 +137,12 @@ size_t ruga_ldl_bytes(const ruga_ldl* f) {
     size_t bytes = ruga_ldl_symbolic_bytes(&f->symbolic);
     bytes += entries * sizeof(double) + n * (5 * sizeof(double) + sizeof(bool));
     bytes += (size_t)f->symbolic.count * (sizeof(front_record) + 2 * sizeof(int));
-    bytes += (size_t)f->gather_capacity * sizeof(double);
+    size_t tasks = (size_t)f->symbolic.task_count, top = (size_t)f->top_count;
+    bytes += ((size_t)f->gather_capacity + tasks * top) * sizeof(double) + (n + top) * sizeof(int);
     for (int t = 0; t <= f->symbolic.task_count; t++) {
         const task_memory* m = &f->memory[t];
         bytes += (m->factor_capacity + m->stack_capacity + m->work_capacity) * sizeof(double) +
-                 m->index_capacity * sizeof(int);
+                 m->index_capacity * sizeof(int) + m->single_capacity * sizeof(float);
     }
     return bytes;
 }
@@ -214,12 +200,11 @@ static void scale_matrix(ruga_ldl* f, const double* values) {
     }
 }
 
-// Room for `count` elements; what grows, grows by an eighth at least.
-static ruga_status make_room(void** memory, size_t* capacity, size_t count, size_t size) {
+ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, size_t size) {
     if (*memory && count <= *capacity) {
         return RUGA_OK;
     }
-    size_t wanted = count > *capacity + *capacity / 8 ? count : *capacity + *capacity / 8;
+    size_t wanted = count > *capacity + *capacity / 32 ? count : *capacity + *capacity / 32;
     void* grown = ruga_reallocate(*memory, wanted * size);
     if (!grown) {
         return ruga_fail(RUGA_NO_MEMORY, "out of memory: the factor needs %zu MB more",
@@ -236,8 +221,8 @@ typedef struct assembly {
     task_memory* memory;
     int s, own, late, below; // pivots of its own, delayed ones of children, rows that stay
     ruga_front front;
-    size_t base;    // of the stack, under the children's updates
-    double* update; // [below]^2
+    size_t base; // of the stack, under the children's updates
+    double* update;
 } assembly;
 
 static double* delayed_of(const ruga_ldl* f, int c, const double** update, int* late, int* below) {
@@ -246,7 +231,7 @@ static double* delayed_of(const ruga_ldl* f, int c, const double** update, int* 
     *update = begin;
     *below = r->rows - r->full;
     *late = r->full - r->eliminated;
-    return begin + (size_t)*below * (size_t)*below;
+    return begin + ruga_update_size(*below);
 }
 
 static ruga_status reserve_front(assembly* a) {
@@ -263,15 +248,16 @@ static ruga_status reserve_front(assembly* a) {
     a->own = s->pivot[a->s + 1] - s->pivot[a->s];
     a->below = (int)(s->row_start[a->s + 1] - s->row_start[a->s]);
     size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below;
-    size_t update = (size_t)a->below * (size_t)a->below;
-    RUGA_TRY(make_room((void**)&m->factor, &m->factor_capacity, m->factor_used + full * (rows + 2),
-                       sizeof(double)));
-    RUGA_TRY(make_room((void**)&m->index, &m->index_capacity, m->index_used + rows, sizeof(int)));
-    RUGA_TRY(make_room((void**)&m->stack, &m->stack_capacity, m->stack_used + update, sizeof(double)));
-    size_t tiles = s->top[a->s] ? (size_t)ruga_chunk_count(a->below, RUGA_FRONT_TILE) : 1;
-    tiles = tiles ? tiles : 1;
+    size_t update = ruga_update_size(a->below);
+    RUGA_TRY(ruga_ldl_make_room((void**)&m->factor, &m->factor_capacity, m->factor_used + full * (rows + 2),
+                                sizeof(double)));
+    RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used + rows, sizeof(int)));
     RUGA_TRY(
-        make_room((void**)&m->work, &m->work_capacity, (tiles * RUGA_FRONT_TILE + 3) * full, sizeof(double)));
+        ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, m->stack_used + update, sizeof(double)));
+    size_t tiles = s->top[a->s] && a->below ? (size_t)ruga_chunk_count(a->below, RUGA_FRONT_TILE) : 1;
+    size_t work = tiles * RUGA_FRONT_TILE * full, shared = ruga_front_shared_work((int)full);
+    work = 3 * full + (s->top[a->s] && shared > work ? shared : work);
+    RUGA_TRY(ruga_ldl_make_room((void**)&m->work, &m->work_capacity, work, sizeof(double)));
     a->update = m->stack + m->stack_used;
     a->front = (ruga_front){.rows = (int)rows, .full = (int)full};
     a->front.a = m->factor + m->factor_used;
@@ -279,6 +265,7 @@ static ruga_status reserve_front(assembly* a) {
     a->front.pivot = m->work;
     a->front.peak = m->work + 2 * full;
     a->front.work = m->work + 3 * full;
+    a->front.shared = s->top[a->s];
     a->front.must_finish = s->parent[a->s] < 0;
     memset(a->front.a, 0, full * rows * sizeof(double));
     memset(a->update, 0, update * sizeof(double));
@@ -310,7 +297,7 @@ static void add_update(assembly* a, const int* place, int below, const double* u
         split++;
     }
     for (int j = 0; j < below; j++) {
-        const double* from = update + (size_t)j * (size_t)below;
+        const double* from = update + ruga_update_column(below, j);
         if (j < split) {
             double* to = a->front.a + (size_t)place[j] * (size_t)a->front.rows;
             a->front.peak[place[j]] += fabs(from[j]);
@@ -321,7 +308,7 @@ static void add_update(assembly* a, const int* place, int below, const double* u
                 to[place[i] + a->late] += from[i];
             }
         } else {
-            double* to = a->update + (size_t)(place[j] - a->own) * (size_t)a->below;
+            double* to = a->update + ruga_update_column(a->below, place[j] - a->own);
             for (int i = j; i < below; i++) {
                 to[place[i] - a->own] += from[i];
             }
@@ -393,11 +380,11 @@ static ruga_status store_front(assembly* a) {
     task_memory* m = a->memory;
     const ruga_front* f = &a->front;
     front_record* record = &a->ldl->front[a->s];
-    size_t update = (size_t)a->below * (size_t)a->below, rows = (size_t)f->rows;
+    size_t update = ruga_update_size(a->below), rows = (size_t)f->rows;
     size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, height = rows - done;
     memmove(m->stack + a->base, a->update, update * sizeof(double));
     size_t used = a->base + update + late * (height + 1);
-    RUGA_TRY(make_room((void**)&m->stack, &m->stack_capacity, used, sizeof(double)));
+    RUGA_TRY(ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, used, sizeof(double)));
     double* delayed = m->stack + a->base + update;
     for (size_t q = 0; q < late; q++) {
         memcpy(delayed + q * height, f->a + (done + q) * rows + done, height * sizeof(double));
@@ -485,7 +472,7 @@ static ruga_status plan_tasks(ruga_ldl* f) {
     for (int k = 0; k < s->count; k++) {
         task_memory* m = &f->memory[f->front[k].task];
         size_t own = (size_t)(s->pivot[k + 1] - s->pivot[k]), base = m->stack_used;
-        size_t below = s->row_start[k + 1] - s->row_start[k], update = below * below;
+        size_t below = s->row_start[k + 1] - s->row_start[k], update = ruga_update_size((int)below);
         for (int c = f->child[k]; c >= 0; c = f->sibling[c]) {
             if (f->front[c].task == f->front[k].task && f->front[c].update < base) {
                 base = f->front[c].update;
@@ -500,9 +487,9 @@ static ruga_status plan_tasks(ruga_ldl* f) {
     }
     for (int t = 0; t <= s->task_count; t++) {
         task_memory* m = &f->memory[t];
-        RUGA_TRY(make_room((void**)&m->factor, &m->factor_capacity, m->factor_used, sizeof(double)));
-        RUGA_TRY(make_room((void**)&m->index, &m->index_capacity, m->index_used, sizeof(int)));
-        RUGA_TRY(make_room((void**)&m->stack, &m->stack_capacity, m->stack_peak, sizeof(double)));
+        RUGA_TRY(ruga_ldl_make_room((void**)&m->factor, &m->factor_capacity, m->factor_used, sizeof(double)));
+        RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used, sizeof(int)));
+        RUGA_TRY(ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, m->stack_peak, sizeof(double)));
     }
     return RUGA_OK;
 }
@@ -532,13 +519,13 @@ static ruga_status finish(ruga_ldl* f, ruga_factor_info* info) {
     for (int k = 0; k < f->symbolic.count; k++) {
         f->widest = f->front[k].rows > f->widest ? f->front[k].rows : f->widest;
     }
-    RUGA_TRY(RUGA_RESERVE(f->gather, f->gather_capacity, f->widest));
+    RUGA_TRY(RUGA_RESERVE(f->gather, f->gather_capacity, (f->symbolic.task_count + 1) * f->widest));
     f->ready = true;
     return RUGA_OK;
 }
 
 ruga_status ruga_ldl_numeric(ruga_ldl* f, const double* values, ruga_factor_info* info) {
-    f->ready = false;
+    f->ready = f->single_ready = false;
     scale_matrix(f, values);
     if (!f->planned) {
         start_tasks(f);
@@ -555,167 +542,4 @@ ruga_status ruga_ldl_numeric(ruga_ldl* f, const double* values, ruga_factor_info
     }
     RUGA_TRY(factor_top(f));
     return finish(f, info);
-}
-
-static void solve_forward(ruga_ldl* f, double* x) {
-    for (int s = 0; s < f->symbolic.count; s++) {
-        const front_record* r = &f->front[s];
-        const double* l = f->memory[r->task].factor + r->factor;
-        const int* index = f->memory[r->task].index + r->index;
-        int done = r->eliminated, below = r->rows - done;
-        double *pivots = f->gather, *rest = f->gather + done;
-        for (int i = 0; i < done; i++) {
-            pivots[i] = x[index[i]];
-        }
-        if (done == 0) {
-            continue;
-        }
-        cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasUnit, done, l, r->rows, pivots, 1);
-        if (below > 0) {
-            cblas_dgemv(CblasColMajor, CblasNoTrans, below, done, 1, l + done, r->rows, pivots, 1, 0, rest,
-                        1);
-        }
-        for (int i = 0; i < done; i++) {
-            x[index[i]] = pivots[i];
-        }
-        for (int i = 0; i < below; i++) {
-            x[index[done + i]] -= rest[i];
-        }
-    }
-}
-
-static void solve_backward(ruga_ldl* f, double* x) {
-    for (int s = f->symbolic.count - 1; s >= 0; s--) {
-        const front_record* r = &f->front[s];
-        const double* l = f->memory[r->task].factor + r->factor;
-        const int* index = f->memory[r->task].index + r->index;
-        int done = r->eliminated, below = r->rows - done;
-        double *pivots = f->gather, *rest = f->gather + done;
-        for (int i = 0; i < r->rows; i++) {
-            f->gather[i] = x[index[i]];
-        }
-        if (done == 0) {
-            continue;
-        }
-        if (below > 0) {
-            cblas_dgemv(CblasColMajor, CblasTrans, below, done, -1, l + done, r->rows, rest, 1, 1, pivots, 1);
-        }
-        cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasUnit, done, l, r->rows, pivots, 1);
-        for (int i = 0; i < done; i++) {
-            x[index[i]] = pivots[i];
-        }
-    }
-}
-
-// M = D^-1 or, absolute, |D^-1| = (M^2 + |det M| I) / sqrt(tr M^2 + 2 |det M|) for blocks (Cayley-Hamilton).
-static void apply_pair(const double d[4], bool absolute, double* x, double* y) {
-    double a = d[0], b = d[1], c = d[2];
-    if (absolute) {
-        double det = fabs(a * c - b * b), trace = a * a + 2 * b * b + c * c;
-        double root = sqrt(trace + 2 * det), off = b * (a + c);
-        double first = a * a + b * b + det, second = b * b + c * c + det;
-        a = first / root;
-        b = off / root;
-        c = second / root;
-    }
-    double sum = a * *x + b * *y;
-    *y = b * *x + c * *y;
-    *x = sum;
-}
-
-static void solve_diagonal(ruga_ldl* f, bool absolute, double* x) {
-    for (int s = 0; s < f->symbolic.count; s++) {
-        const front_record* r = &f->front[s];
-        const double* d = f->memory[r->task].factor + r->factor + (size_t)r->eliminated * (size_t)r->rows;
-        const int* index = f->memory[r->task].index + r->index;
-        for (int k = 0; k < r->eliminated; k++) {
-            if (d[2 * k + 1] != 0) {
-                apply_pair(d + 2 * (size_t)k, absolute, &x[index[k]], &x[index[k + 1]]);
-                k++;
-            } else if (absolute) { // where D is zero, any positive number serves
-                x[index[k]] *= d[2 * k] == 0 ? 1 : fabs(d[2 * k]);
-            } else {
-                x[index[k]] *= d[2 * k];
-            }
-        }
-    }
-}
-
-// y = (L D L^T)^-1 b with scaled b and y, by unknown; may be the same.
-static void solve_scaled(ruga_ldl* f, bool absolute, const double* b, double* y) {
-    const int* order = f->symbolic.order;
-    double* x = f->answer;
-    for (int k = 0; k < f->symbolic.n; k++) {
-        x[k] = b[order[k]];
-    }
-    solve_forward(f, x);
-    solve_diagonal(f, absolute, x);
-    solve_backward(f, x);
-    for (int k = 0; k < f->symbolic.n; k++) {
-        y[order[k]] = x[k];
-    }
-}
-
-// defect = S (b - A x) for x = S guess; returns |b - A x|. *backward: the defect relative to what round-off
-// in S x and S b explains.
-static double find_defect(ruga_ldl* f, double* backward) {
-    int n = f->symbolic.n;
-    double sum = 0;
-    ruga_sparse_multiply_symmetric(&f->matrix, f->guess, f->defect);
-    for (int i = 0; i < n; i++) {
-        f->defect[i] = f->load[i] - f->defect[i];
-        double r = f->defect[i] / f->scale[i];
-        sum += r * r;
-    }
-    *backward = cblas_dnrm2(n, f->defect, 1) / (cblas_dnrm2(n, f->guess, 1) + cblas_dnrm2(n, f->load, 1));
-    return sqrt(sum);
-}
-
-// One step of iterative refinement, taken back where it does not help. True where another may.
-static bool refine(ruga_ldl* f, double* residual, double* backward) {
-    int n = f->symbolic.n;
-    solve_scaled(f, false, f->defect, f->defect);
-    cblas_daxpy(n, 1, f->defect, 1, f->guess, 1);
-    double before = *residual;
-    *residual = find_defect(f, backward);
-    if (!(*residual < before)) {
-        for (int k = 0; k < n; k++) {
-            f->guess[f->symbolic.order[k]] -= f->answer[k];
-        }
-    }
-    return *residual < 0.5 * before;
-}
-
-ruga_status ruga_ldl_solve(ruga_ldl* f, const double* b, double* x) {
-    enum { REFINEMENTS = 2 };
-    const double enough = 1e-12, round_off = 4e-15;
-    RUGA_ASSERT(f->ready);
-    int n = f->symbolic.n;
-    double size = cblas_dnrm2(n, b, 1), backward;
-    for (int i = 0; i < n; i++) {
-        f->load[i] = b[i] * f->scale[i];
-    }
-    solve_scaled(f, false, f->load, f->guess);
-    double residual = find_defect(f, &backward);
-    for (int step = 0; step < REFINEMENTS && residual > enough * size && backward > round_off; step++) {
-        if (!refine(f, &residual, &backward)) {
-            break;
-        }
-    }
-    for (int i = 0; i < n; i++) {
-        x[i] = f->guess[i] * f->scale[i];
-    }
-    return RUGA_OK;
-}
-
-ruga_status ruga_ldl_solve_absolute(ruga_ldl* f, const double* b, double* x) {
-    RUGA_ASSERT(f->ready);
-    for (int i = 0; i < f->symbolic.n; i++) {
-        f->load[i] = b[i] * f->scale[i];
-    }
-    solve_scaled(f, true, f->load, f->guess);
-    for (int i = 0; i < f->symbolic.n; i++) {
-        x[i] = f->guess[i] * f->scale[i];
-    }
-    return RUGA_OK;
 }

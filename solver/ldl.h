@@ -2,11 +2,13 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // Multifrontal LDL^T: the analysis (ldl_symbolic.c), one dense front (ldl_front.c), and what drives them
-// (ldl.c: numeric factorisation and solves). linear.h is the interface for others.
+// (ldl.c: numeric factorisation; ldl_solve.c: solves). linear.h is the interface for others.
 #ifndef RUGA_SOLVER_LDL_H
 #define RUGA_SOLVER_LDL_H
 
 #include "solver/linear.h"
+
+#include <stddef.h>
 
 // Unknowns are numbered by their step of elimination. Supernode s eliminates steps [pivot[s], pivot[s + 1]),
 // parents after children, each subtree contiguous. Its front holds these pivots and the rows below:
@@ -46,26 +48,89 @@ typedef struct ruga_front {
     int* index;       // [rows] step of each row, permuted along with them
     double* pivot;    // [full][2] D: (d, 0), or (d11, d21), (d22, 0)
     double* peak;     // [full] the largest size that the diagonal entry ever had: the measure of round-off
-    double* work;     // [RUGA_FRONT_TILE * full]
+    double* work;     // [RUGA_FRONT_TILE * full], shared: also [ruga_front_shared_work(full)]
+    bool shared;      // at the top: tiles are shared out to threads
     bool must_finish; // a root: no parent takes pivots that are not stable
     int eliminated, positive, negative, zero;
 } ruga_front;
 
+// Pivots are taken in blocks; tiles of columns that wait for a block have a work space each.
+enum { RUGA_FRONT_BLOCK = 64 };
+static inline size_t ruga_front_shared_work(int full) {
+    return (size_t)(full / RUGA_FRONT_TILE + 1) * RUGA_FRONT_TILE * RUGA_FRONT_BLOCK;
+}
+
 // Eliminates as many of the fully summed columns as stable pivots are found for.
 void ruga_front_factor(ruga_front* front);
 
-// update -= L2 D L2^T, lower triangle of [rows - full]^2, columns [begin, end), with `work` as in the front.
+// Update matrices [rows]^2 keep their lower triangle in tiles of columns, each without the rows above its
+// first: column j has its row i at ruga_update_column(rows, j) + i. Half the memory of a square.
+static inline size_t ruga_update_size(int rows) {
+    size_t n = (size_t)rows, tiles = n / RUGA_FRONT_TILE, rest = n % RUGA_FRONT_TILE;
+    return RUGA_FRONT_TILE * (tiles * n - RUGA_FRONT_TILE * tiles * (tiles - (tiles > 0)) / 2) + rest * rest;
+}
+static inline ptrdiff_t ruga_update_column(int rows, int column) {
+    ptrdiff_t n = rows, k = column / RUGA_FRONT_TILE, first = k * RUGA_FRONT_TILE;
+    ptrdiff_t tile = RUGA_FRONT_TILE * (k * n - RUGA_FRONT_TILE * k * (k - 1) / 2);
+    return tile + (column - first) * (n - first) - first;
+}
+
+// update -= L2 D L2^T, columns [begin, end), with `work` as in the front; begin is the first of a tile.
 void ruga_front_update(const ruga_front* front, int begin, int end, double* work, double* update);
 
-typedef struct ruga_ldl ruga_ldl;
+// Storage of a task. Places in it are kept as offsets, since it moves when delayed pivots make it grow.
+typedef struct task_memory {
+    double* factor; // per front: panel [eliminated][rows], then D^-1 [eliminated][2]
+    size_t factor_used, factor_capacity;
+    int* index; // per front: steps of its rows, pivots first
+    size_t index_used, index_capacity;
+    double* stack; // per front: update of `below` rows, delayed [late][late + below], peak [late]
+    size_t stack_used, stack_peak, stack_capacity;
+    double* work; // pivots and peaks of one front, tile of L D
+    size_t work_capacity;
+    float* single; // the panels again, at the same places
+    size_t single_capacity;
+    int positive, negative, zero;
+    double entries, flops;
+    ruga_status status;
+} task_memory;
+
+typedef struct front_record {
+    size_t factor, index, update; // offsets in its task's memory
+    int task, rows, full, eliminated;
+} front_record;
+
+typedef struct ruga_ldl {
+    ruga_ldl_symbolic symbolic;
+    ruga_sparse matrix;  // the caller's pattern, with our values: S A S
+    bool* last;          // [n] unknowns of multiplier nodes
+    double* scale;       // [n] S
+    int* child;          // [count] first child of a supernode, -1 = none
+    int* sibling;        // [count]
+    front_record* front; // [count]
+    task_memory* memory; // [task_count + 1], the last one for the top
+    bool planned, ready, single_ready;
+    int widest;             // rows of the largest front
+    double *load, *answer;  // [n] scaled, by unknown; by step
+    double *defect, *guess; // [n] scaled, by unknown
+    int* top_place;         // [n] number of a step that a top front eliminates, -1 = none
+    int* top_step;          // [top_count] its inverse
+    int top_count;
+    double* handed_up; // [task_count][top_count] what a task adds to those steps, by its forward pass
+    double* gather;    // [task_count + 1][widest]
+    int gather_capacity;
+} ruga_ldl;
 
 // `lower` stays the caller's and must outlive the factor. The values given later must be finite.
 ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start, const bool* last,
                             ruga_ldl** ldl);
 void ruga_ldl_destroy(ruga_ldl** ldl);
+// Room for `count` elements of `size` bytes; what grows, grows by 3 % at least.
+ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, size_t size);
 ruga_status ruga_ldl_numeric(ruga_ldl* ldl, const double* values, ruga_factor_info* info);
 ruga_status ruga_ldl_solve(ruga_ldl* ldl, const double* b, double* x);
 ruga_status ruga_ldl_solve_absolute(ruga_ldl* ldl, const double* b, double* x);
+ruga_status ruga_ldl_solve_rough(ruga_ldl* ldl, const double* b, double* x);
 size_t ruga_ldl_bytes(const ruga_ldl* ldl);
 
 #endif

@@ -13,10 +13,12 @@
 // above it, where nothing is read.
 #include "solver/ldl.h"
 
+#include "core/parallel.h"
+
 #include <cblas.h>
 #include <math.h>
 
-enum { INNER = 8, OUTER = 64 };
+enum { INNER = 8, OUTER = RUGA_FRONT_BLOCK };
 
 static const double threshold = 0.01;
 // A pivot below this share of the largest value that its diagonal ever had is what cancellation left.
@@ -216,16 +218,37 @@ static void multiply_pivots(const ruga_front* f, int begin, int end, int first, 
     }
 }
 
-// Applies the pivots [first, eliminated) to the columns [begin, end).
-static void update_columns(ruga_front* f, int begin, int end, int first) {
-    int pivots = f->eliminated - first;
-    for (int t = begin; t < end && pivots > 0; t += RUGA_FRONT_TILE) {
-        int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
-        multiply_pivots(f, t, stop, first, f->eliminated, f->work);
-        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, f->rows - t, stop - t, pivots, -1,
-                    at(f, t, first), f->rows, f->work, stop - t, 1, at(f, t, t), f->rows);
+// Pivots [first, eliminated) for the columns [begin, begin + count) by tiles.
+typedef struct columns_job {
+    ruga_front* front;
+    int begin, end, first;
+    bool shared; // a piece of `work` for each tile
+} columns_job;
+
+static void update_tile(int tile, int stop, int chunk, void* context) {
+    const columns_job* job = context;
+    ruga_front* f = job->front;
+    int t = job->begin + tile, end = job->begin + stop, pivots = f->eliminated - job->first;
+    double* work = f->work + (job->shared ? (size_t)chunk * RUGA_FRONT_TILE * OUTER : 0);
+    multiply_pivots(f, t, end, job->first, f->eliminated, work);
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, f->rows - t, end - t, pivots, -1,
+                at(f, t, job->first), f->rows, work, end - t, 1, at(f, t, t), f->rows);
+    note_peaks(f, t, end);
+}
+
+// Applies the pivots [first, eliminated), at most OUTER where shared, to the columns [begin, end).
+static void update_columns(ruga_front* f, int begin, int end, int first, bool shared) {
+    columns_job job = {f, begin, end, first, shared};
+    if (f->eliminated == first || begin >= end) {
+        return;
     }
-    note_peaks(f, begin, end);
+    if (shared) {
+        ruga_parallel_for(end - begin, RUGA_FRONT_TILE, update_tile, &job);
+        return;
+    }
+    for (int t = 0; t < end - begin; t += RUGA_FRONT_TILE) {
+        update_tile(t, end - begin - t < RUGA_FRONT_TILE ? end - begin : t + RUGA_FRONT_TILE, 0, &job);
+    }
 }
 
 // Moves the columns [eliminated, failed) to the end of [eliminated, end). Returns their new beginning.
@@ -243,7 +266,7 @@ static void eliminate_block(ruga_front* f, int end) {
     while (f->eliminated < stop) {
         int first = f->eliminated, inner = stop - first < INNER ? stop : first + INNER;
         eliminate_columns(f, inner);
-        update_columns(f, inner, end, first);
+        update_columns(f, inner, end, first, false);
         stop = put_aside(f, inner, stop);
     }
 }
@@ -254,7 +277,7 @@ void ruga_front_factor(ruga_front* f) {
     while (f->eliminated < stop) {
         int first = f->eliminated, outer = stop - first < OUTER ? stop : first + OUTER;
         eliminate_block(f, outer);
-        update_columns(f, outer, f->full, first);
+        update_columns(f, outer, f->full, first, f->shared && f->full - outer >= 2 * RUGA_FRONT_TILE);
         stop = put_aside(f, outer, stop);
     }
     eliminate_columns(f, f->full); // those put aside, now with all others as partners
@@ -269,6 +292,7 @@ void ruga_front_update(const ruga_front* f, int begin, int end, double* work, do
         int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
         multiply_pivots(f, f->full + t, f->full + stop, 0, f->eliminated, work);
         cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - t, stop - t, f->eliminated, -1,
-                    at(f, f->full + t, 0), f->rows, work, stop - t, 1, update + (size_t)t * rows + t, rows);
+                    at(f, f->full + t, 0), f->rows, work, stop - t, 1,
+                    update + ruga_update_column(rows, t) + t, rows - t);
     }
 }

@@ -41,6 +41,11 @@ ruga_status ruga_factor_numeric(ruga_factor* factor, const double* values, ruga_
 // in x does not explain it (LDL). One call at a time on the same factor: the work space is part of it.
 ruga_status ruga_factor_solve(ruga_factor* factor, const double* b, double* x);
 
+// LDL only: x near A^-1 b, without refinement and from a copy of the factor in single precision, which the first
+// call after a factorisation makes: as fast as the memory gives the copy. A symmetric operator with the inertia of
+// the factor: an initial inverse or preconditioner. Cholesky: the same as ruga_factor_solve.
+ruga_status ruga_factor_solve_rough(ruga_factor* factor, const double* b, double* x);
+
 // LDL only: x = (L |D| L^T)^-1 b, positive definite: the preconditioner for MINRES (Gill et al. 1992).
 ruga_status ruga_factor_solve_absolute(ruga_factor* factor, const double* b, double* x);
 

@@ -52,6 +52,28 @@ static void square_indices(int begin, int end, int chunk, void* context) {
     }
 }
 
+// Each index calls for a range of its own, from inside a chunk.
+static void square_rows(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    for (int i = begin; i < end; i++) {
+        ruga_parallel_for(10, 3, square_indices, (int*)context + 10 * (size_t)i);
+    }
+}
+
+static void parallel_for_inside_a_chunk_covers_its_range_once(void** state) {
+    (void)state;
+    int squares[1000];
+    ruga_set_threads(3);
+    for (int again = 0; again < 200; again++) {
+        memset(squares, 0, sizeof squares);
+        ruga_parallel_for(100, 1, square_rows, squares);
+        for (int i = 0; i < 1000; i++) {
+            assert_int_equal(squares[i], (i % 10) * (i % 10));
+        }
+    }
+    ruga_set_threads(0);
+}
+
 static void parallel_for_covers_the_range_once(void** state) {
     (void)state;
     int squares[1000];
@@ -106,6 +128,7 @@ int main(void) {
         cmocka_unit_test(byte_count_returns_to_zero),
         cmocka_unit_test(failed_allocation_is_a_status),
         cmocka_unit_test(parallel_for_covers_the_range_once),
+        cmocka_unit_test(parallel_for_inside_a_chunk_covers_its_range_once),
         cmocka_unit_test(pattern_from_pairs_is_sorted_without_repeats),
         cmocka_unit_test(symmetric_product_equals_dense),
     };

@@ -431,28 +431,95 @@ static void absolute_factor_is_spd_and_perfect_for_minres(void** state) {
     }
 }
 
+// One front of n dense columns with an indefinite diagonal.
+static void dense_system(linear_system* s, int n) {
+    pair_list list = {0};
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < j; i++) {
+            push(&list, i, j);
+        }
+    }
+    system_create(s, n, 1, n, list.count, (const int(*)[2])list.pairs);
+    ruga_random random = {17};
+    for (int p = 0; p < s->a.start[n]; p++) {
+        s->a.value[p] = 2 * ruga_random_uniform(&random) - 1;
+    }
+    ruga_release(list.pairs);
+}
+
 static void bits_do_not_depend_on_threads_or_repetition(void** state) {
+    (void)state;
+    for (int large_front = 0; large_front < 2; large_front++) {
+        linear_system s;
+        ruga_factor_info info;
+        if (large_front) {
+            dense_system(&s, 500);
+        } else {
+            kkt(&s, &wavy);
+        }
+        int n = s.a.rows;
+        double *b = random_vector(n, 1), *first = random_vector(2 * n, 2), *x = random_vector(2 * n, 3);
+        for (int k = 0; k < 4; k++) {
+            ruga_set_threads(1 + k % 2);
+            ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL, &info);
+            assert_ok(ruga_factor_solve(f, b, k ? x : first));
+            assert_ok(ruga_factor_solve_rough(f, b, (k ? x : first) + n));
+            for (int again = 0; k && again < 2; again++) {
+                assert_memory_equal(x, first, 2 * (size_t)n * sizeof *x);
+                assert_ok(ruga_factor_numeric(f, s.a.value, &info));
+                assert_ok(ruga_factor_solve(f, b, x));
+                assert_ok(ruga_factor_solve_rough(f, b, x + n));
+            }
+            ruga_factor_destroy(&f);
+        }
+        ruga_release(b);
+        ruga_release(first);
+        ruga_release(x);
+        system_clear(&s);
+    }
+    ruga_set_threads(0);
+}
+
+static void dense_front_is_solved_with_the_inertia_of_its_eigenvalues(void** state) {
     (void)state;
     linear_system s;
     ruga_factor_info info;
-    kkt(&s, &wavy);
-    int n = s.a.rows;
-    double *b = random_vector(n, 1), *first = random_vector(n, 2), *x = random_vector(n, 3);
-    for (int k = 0; k < 4; k++) {
-        ruga_set_threads(1 + k % 2);
-        ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL, &info);
-        assert_ok(ruga_factor_solve(f, b, k ? x : first));
-        for (int again = 0; k && again < 2; again++) {
-            assert_memory_equal(x, first, (size_t)n * sizeof *x);
-            assert_ok(ruga_factor_numeric(f, s.a.value, &info));
-            assert_ok(ruga_factor_solve(f, b, x));
-        }
-        ruga_factor_destroy(&f);
-    }
-    ruga_set_threads(0);
+    int positive, negative;
+    double gap;
+    dense_system(&s, 300);
+    ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL, &info);
+    dense_inertia(&s.a, &positive, &negative, &gap);
+    assert_true(gap > 1e-8);
+    assert_int_equal(info.positive, positive);
+    assert_int_equal(info.negative, negative);
+    assert_true(solve_residual(&s, f) <= 1e-11);
+    ruga_factor_destroy(&f);
+    system_clear(&s);
+}
+
+static void rough_solve_is_symmetric_and_near_the_solution(void** state) {
+    (void)state;
+    linear_system s;
+    ruga_factor_info info;
+    kkt(&s, &firm);
+    int n = s.a.rows, primal = 3 * firm.side * firm.side;
+    ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL, &info);
+    double *b = random_vector(n, 1), *c = random_vector(n, 2), *x = random_vector(n, 3), *y = random_vector(n, 4);
+    memset(b + primal, 0, (size_t)(n - primal) * sizeof *b);
+    memset(c + primal, 0, (size_t)(n - primal) * sizeof *c);
+    assert_ok(ruga_factor_solve_rough(f, b, x));
+    assert_ok(ruga_factor_solve_rough(f, c, y));
+    double size = sqrt(cblas_ddot(n, b, 1, x, 1) * cblas_ddot(n, c, 1, y, 1)); // positive on the null space of H
+    assert_near(cblas_ddot(n, c, 1, x, 1), cblas_ddot(n, b, 1, y, 1), 1e-9 * size);
+    assert_ok(ruga_factor_solve(f, b, y));
+    size = norm(primal, y);
+    cblas_daxpy(primal, -1, x, 1, y, 1);
+    assert_true(norm(primal, y) <= 1e-2 * size && norm(primal, y) > 0);
+    ruga_factor_destroy(&f);
     ruga_release(b);
-    ruga_release(first);
+    ruga_release(c);
     ruga_release(x);
+    ruga_release(y);
     system_clear(&s);
 }
 
@@ -563,6 +630,8 @@ int main(void) {
         cmocka_unit_test(kkt_solution_equals_that_of_umfpack),
         cmocka_unit_test(absolute_factor_is_spd_and_perfect_for_minres),
         cmocka_unit_test(bits_do_not_depend_on_threads_or_repetition),
+        cmocka_unit_test(dense_front_is_solved_with_the_inertia_of_its_eigenvalues),
+        cmocka_unit_test(rough_solve_is_symmetric_and_near_the_solution),
         cmocka_unit_test(tiny_and_odd_patterns_are_solved),
         cmocka_unit_test(values_that_are_not_finite_are_refused),
         cmocka_unit_test(kth_failed_allocation_is_reported),
