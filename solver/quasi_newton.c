@@ -12,6 +12,7 @@
 #include <string.h>
 
 enum { PAIRS = 8, REFRESH = 16, MAX_ITERATIONS = 3000 };
+static const double NEAR = 1e-2; // residual below which the exact Hessian is worth a trial
 enum { GRADIENT, PROJECTED, DIRECTION, OLD_GRADIENT, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
 
 typedef struct memory {
@@ -94,6 +95,19 @@ static ruga_status iterate(ruga_skin* skin, memory* m, double* x, double* gradie
     return RUGA_OK;
 }
 
+// Near a minimum the exact Hessian is convex again, and its factor ends the solve in a few steps: the clamped one is up to
+// ten times too stiff along the soft directions, which wrinkles slide and grow along. With the proximal term it mostly is convex from the start.
+static ruga_status renew_factor(ruga_skin* skin, const double* x, double residual, memory* m) {
+    *m = (memory){.gamma = 1, .newest = -1};
+    if (residual < NEAR || skin->proximal > 0) {
+        RUGA_TRY(ruga_skin_factor(skin, x, 0, 0));
+        if (skin->factor_right) {
+            return RUGA_OK;
+        }
+    }
+    return ruga_skin_factor_convex(skin, x);
+}
+
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result) {
     double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
@@ -118,8 +132,7 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
             score = REFRESH;
         }
         if (score >= REFRESH) {
-            RUGA_TRY(ruga_skin_factor_convex(skin, x));
-            m = (memory){.gamma = 1, .newest = -1};
+            RUGA_TRY(renew_factor(skin, x, result->residual, &m));
             score = 0;
             continue;
         }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// Cost of a frame of the static solve on the 50 cm pillow (h = 0.7 mm, E ratio 1e4, E_q = 50 kPa): from flat to 1 %
-// compression in 5 frames, then measured frames of 0.2 % more and a 1 mm deeper bump, 20 ms each. The unit is one
-// numeric factorisation of the frame's matrix, timed in the same run right after the frame. `quasi-newton`, and
-// `damped` (the same with motion: damped), each go their own way; the other methods start each frame from the states
-// of quasi-newton. Those that use MINRES take minutes and run --slow-frames only. Where the published method stops
-// short of the tolerance, the time at which another first passes its final residual is printed as `to mark`.
+// Cost of a frame of the static solve on the 50 cm pillow (h = 0.7 mm, E ratio 1e4, E_q = 50 kPa): from flat
+// to 1 % compression in 5 frames, then measured frames of 0.2 % more and a 1 mm deeper bump, 20 ms each. The
+// unit is one numeric factorisation of the frame's matrix, timed in the same run right after the frame.
+// `quasi-newton`, and `damped` (the same with motion: damped), each go their own way; the other methods start
+// each frame from the states of quasi-newton. Those that use MINRES take minutes and run --slow-frames only.
+// Where the published method stops short of the tolerance, the time at which another first passes its final
+// residual is printed as `to mark`.
 //     bench [--frames N] [--slow-frames N] [--methods A,B] [--threads N,M] [--per-frame] [--json FILE]
-//           [--residuals FILE.csv] [UNKNOWNS[:CLUSTERS] ...]
+//           [--residuals FILE.csv] [--relaxation SECONDS] [UNKNOWNS[:CLUSTERS] ...]
 // --residuals writes residual, energy and work spent at each iteration.
 #include "core/memory.h"
 #include "core/progress.h"
@@ -46,6 +47,7 @@ typedef struct options {
     int frames, slow_frames, threads[2], thread_count, case_count;
     int unknowns[MAX_CASES], clusters[MAX_CASES];
     const char* methods;
+    double relaxation; // of damped motion
     bool per_frame;
     FILE *json, *residuals;
     bool first_row;
@@ -97,7 +99,8 @@ static ruga_status make_pillow(int unknowns, ruga_mesh* mesh) {
     return RUGA_OK;
 }
 
-static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def keys[3], int frames) {
+static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def keys[3], const options* o) {
+    int frames = o->frames;
     def->mesh = ruga_mesh_as_def(mesh);
     def->skin.thickness = 0.7e-3;
     def->skin.young = 500e6;
@@ -105,6 +108,7 @@ static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def k
     def->interior.motion = RUGA_INTERIOR_PRESCRIBED;
     def->lattice.cells = 5;
     def->solver.allow_coarse = true;
+    def->skin.relaxation = o->relaxation;
     for (int k = 0; k < 3; k++) {
         keys[k] = ruga_default_keyframe_def();
         keys[k].has_bump = true;
@@ -211,8 +215,9 @@ static ruga_status measure_lag(bench* b, frame* f) {
 static void write_residuals(const bench* b, const run* r, int index, double begin, FILE* file) {
     for (int k = 0; k < b->state->skin->trace_count; k++) {
         const ruga_skin_trace* t = &b->trace[k];
-        (void)fprintf(file, "%d,%s,%d,%d,%d,%.6g,%.6e,%.12e,%d,%d\n", 3 * b->mesh.vertex_count, r->variant->name,
-                      r->threads, index, k, t->clock - begin, t->residual, t->energy, t->factorizations, t->energies);
+        (void)fprintf(file, "%d,%s,%d,%d,%d,%.6g,%.6e,%.12e,%d,%d\n", 3 * b->mesh.vertex_count,
+                      r->variant->name, r->threads, index, k, t->clock - begin, t->residual, t->energy,
+                      t->factorizations, t->energies);
     }
 }
 
@@ -268,20 +273,47 @@ static double column(const run* r, double (*value)(const frame*), bool worst) {
     return worst ? most : median(values, r->count);
 }
 
-static double seconds_of(const frame* f) { return f->report.seconds_total; }
-static double units_of(const frame* f) { return f->report.seconds_total / f->unit; }
-static double iterations_of(const frame* f) { return f->report.newton_iterations; }
-static double factors_of(const frame* f) { return f->report.factorizations; }
-static double energies_of(const frame* f) { return f->work.energies; }
-static double failures_of(const frame* f) { return f->work.failures; }
-static double linear_of(const frame* f) { return f->report.linear_iterations; }
-static double move_of(const frame* f) { return f->move; }
-static double residual_of(const frame* f) { return f->report.residual_shell; }
-static double mark_of(const frame* f) { return f->to_mark; }
-static double lag_max_of(const frame* f) { return f->lag_max; }
-static double lag_rms_of(const frame* f) { return f->lag_rms; }
-// A solve with its gradient costs about a twentieth of a factorisation: a measure that no other load disturbs.
-static double counted_of(const frame* f) { return f->report.factorizations + f->report.newton_iterations / 18.0; }
+static double seconds_of(const frame* f) {
+    return f->report.seconds_total;
+}
+static double units_of(const frame* f) {
+    return f->report.seconds_total / f->unit;
+}
+static double iterations_of(const frame* f) {
+    return f->report.newton_iterations;
+}
+static double factors_of(const frame* f) {
+    return f->report.factorizations;
+}
+static double energies_of(const frame* f) {
+    return f->work.energies;
+}
+static double failures_of(const frame* f) {
+    return f->work.failures;
+}
+static double linear_of(const frame* f) {
+    return f->report.linear_iterations;
+}
+static double move_of(const frame* f) {
+    return f->move;
+}
+static double residual_of(const frame* f) {
+    return f->report.residual_shell;
+}
+static double mark_of(const frame* f) {
+    return f->to_mark;
+}
+static double lag_max_of(const frame* f) {
+    return f->lag_max;
+}
+static double lag_rms_of(const frame* f) {
+    return f->lag_rms;
+}
+// A solve with its gradient costs about a twentieth of a factorisation: a measure that no other load
+// disturbs.
+static double counted_of(const frame* f) {
+    return f->report.factorizations + f->report.newton_iterations / 18.0;
+}
 
 static int minima(const run* r) {
     int count = 0;
@@ -292,15 +324,15 @@ static int minima(const run* r) {
 }
 
 static void print_frames(const run* r) {
-    printf("%s, %d threads\n%5s %8s %7s %7s %5s %5s %5s %5s %5s %5s %5s %9s %7s %6s\n", r->variant->name, r->threads,
-           "frame", "seconds", "units", "counted", "iter", "evals", "fact", "conv", "cert", "fail", "parts", "residual",
-           "move/h", "lag/h");
+    printf("%s, %d threads\n%5s %8s %7s %7s %5s %5s %5s %5s %5s %5s %5s %9s %7s %6s\n", r->variant->name,
+           r->threads, "frame", "seconds", "units", "counted", "iter", "evals", "fact", "conv", "cert",
+           "fail", "parts", "residual", "move/h", "lag/h");
     for (int k = 0; k < r->count; k++) {
         const frame* f = &r->frames[k];
-        printf("%5d %8.3f %7.1f %7.1f %5d %5d %5d %5d %5d %5d %5d %9.1e %7.2f %6.2f\n", k, seconds_of(f), units_of(f),
-               counted_of(f), f->report.newton_iterations, f->work.energies, f->report.factorizations,
-               convex_factors(&f->work), f->work.certificates, f->work.failures, f->report.substeps,
-               f->report.residual_shell, f->move, f->lag_max);
+        printf("%5d %8.3f %7.1f %7.1f %5d %5d %5d %5d %5d %5d %5d %9.1e %7.2f %6.2f\n", k, seconds_of(f),
+               units_of(f), counted_of(f), f->report.newton_iterations, f->work.energies,
+               f->report.factorizations, convex_factors(&f->work), f->work.certificates, f->work.failures,
+               f->report.substeps, f->report.residual_shell, f->move, f->lag_max);
     }
 }
 
@@ -314,38 +346,43 @@ static void print_row(const run* r) {
         solve += f->report.seconds_solve / r->count / f->unit;
         energy += f->work.seconds_energy / r->count / f->unit;
     }
-    printf("%-13s %d %8.3f %8.3f %8.3f | %6.1f %6.1f | %6.1f %6.1f | %5.2f %5.1f %5.2f %5.2f | %5.0f %5.0f %5.0f %4.1f "
+    printf("%-13s %d %8.3f %8.3f %8.3f | %6.1f %6.1f | %6.1f %6.1f | %5.2f %5.1f %5.2f %5.2f | %5.0f %5.0f "
+           "%5.0f %4.1f "
            "%4.0f %7.0f | %8.1e %2d/%-2d %5.1f %5.2f %5.2f\n",
            r->variant->name, r->threads, column(r, seconds_of, false), column(r, seconds_of, true),
            column(r, mark_of, false), column(r, units_of, false), column(r, units_of, true),
            column(r, counted_of, false), column(r, counted_of, true), assembly, factor, solve, energy,
-           column(r, iterations_of, false), column(r, iterations_of, true), evaluations, column(r, factors_of, false),
-           column(r, factors_of, true), column(r, linear_of, false), column(r, residual_of, true), minima(r), r->count,
-           column(r, move_of, true), column(r, lag_max_of, true), column(r, lag_rms_of, true));
+           column(r, iterations_of, false), column(r, iterations_of, true), evaluations,
+           column(r, factors_of, false), column(r, factors_of, true), column(r, linear_of, false),
+           column(r, residual_of, true), minima(r), r->count, column(r, move_of, true),
+           column(r, lag_max_of, true), column(r, lag_rms_of, true));
 }
 
 static void write_json(const bench* b, const run* r, double memory_ratio, options* o) {
-    (void)fprintf(o->json,
-                  "%s\n{\"unknowns\": %d, \"clusters\": %d, \"elements\": %d, \"method\": \"%s\", \"threads\": %d, "
-                  "\"setup\": %.4g, \"median\": %.4g, \"worst\": %.4g, \"to_mark\": %.4g, \"units_median\": %.4g, "
-                  "\"units_worst\": %.4g, \"unit_seconds\": %.4g, \"minima\": %d, \"memory_over_factor\": %.4g, "
-                  "\"frames\": [",
-                  o->first_row ? "[" : ",", 3 * b->mesh.vertex_count, b->model->clusters.count,
-                  b->model->lattice.element_count, r->variant->name, r->threads, b->setup, column(r, seconds_of, false),
-                  column(r, seconds_of, true), column(r, mark_of, false), column(r, units_of, false),
-                  column(r, units_of, true), r->frames[0].unit, minima(r), memory_ratio);
+    (void)fprintf(
+        o->json,
+        "%s\n{\"unknowns\": %d, \"clusters\": %d, \"elements\": %d, \"method\": \"%s\", \"threads\": %d, "
+        "\"setup\": %.4g, \"median\": %.4g, \"worst\": %.4g, \"to_mark\": %.4g, \"units_median\": %.4g, "
+        "\"units_worst\": %.4g, \"unit_seconds\": %.4g, \"minima\": %d, \"memory_over_factor\": %.4g, "
+        "\"frames\": [",
+        o->first_row ? "[" : ",", 3 * b->mesh.vertex_count, b->model->clusters.count,
+        b->model->lattice.element_count, r->variant->name, r->threads, b->setup, column(r, seconds_of, false),
+        column(r, seconds_of, true), column(r, mark_of, false), column(r, units_of, false),
+        column(r, units_of, true), r->frames[0].unit, minima(r), memory_ratio);
     o->first_row = false;
     for (int k = 0; k < r->count; k++) {
         const frame* f = &r->frames[k];
-        (void)fprintf(o->json,
-                      "%s\n  {\"seconds\": %.4g, \"units\": %.4g, \"counted\": %.4g, \"iterations\": %d, "
-                      "\"linear\": %d, \"energies\": %d, \"factorizations\": %d, \"certificates\": %d, \"failed\": %.0f, "
-                      "\"substeps\": %d, \"residual\": %.4g, \"outcome\": %d, \"move\": %.4g, \"lag_max\": %.4g, "
-                      "\"lag_rms\": %.4g}",
-                      k ? "," : "", seconds_of(f), units_of(f), counted_of(f), f->report.newton_iterations,
-                      f->report.linear_iterations, (int)energies_of(f), f->report.factorizations, f->work.certificates,
-                      failures_of(f), f->report.substeps, f->report.residual_shell, (int)f->report.outcome, f->move,
-                      f->lag_max, f->lag_rms);
+        (void)fprintf(
+            o->json,
+            "%s\n  {\"seconds\": %.4g, \"units\": %.4g, \"counted\": %.4g, \"iterations\": %d, "
+            "\"linear\": %d, \"energies\": %d, \"factorizations\": %d, \"certificates\": %d, \"failed\": "
+            "%.0f, "
+            "\"substeps\": %d, \"residual\": %.4g, \"outcome\": %d, \"move\": %.4g, \"lag_max\": %.4g, "
+            "\"lag_rms\": %.4g}",
+            k ? "," : "", seconds_of(f), units_of(f), counted_of(f), f->report.newton_iterations,
+            f->report.linear_iterations, (int)energies_of(f), f->report.factorizations, f->work.certificates,
+            failures_of(f), f->report.substeps, f->report.residual_shell, (int)f->report.outcome, f->move,
+            f->lag_max, f->lag_rms);
     }
     (void)fprintf(o->json, "]}");
 }
@@ -354,12 +391,14 @@ static void report(bench* b, const run* runs, int count, options* o) {
     double factor = (double)ruga_factor_bytes(b->state->skin->factor);
     size_t peak = process_bytes("VmHWM:");
     double ratio = peak > b->bytes_before ? (double)(peak - b->bytes_before) / factor : 0;
-    printf("\n%d unknowns, %d clusters, %d elements; setup %.2f s; factor %.1f MB, peak above start %.2f factors\n",
-           3 * b->mesh.vertex_count, b->model->clusters.count, b->model->lattice.element_count, b->setup, factor / 1e6,
-           ratio);
-    printf("%-13s %s %8s %8s %8s | %6s %6s | %6s %6s | %s | %5s %5s %5s %4s %4s %7s | %8s %5s %5s %5s %5s\n", "method",
-           "t", "median s", "worst s", "to mark", "units", "worst", "counts", "worst", "asmb  fact  solve  E+g ", "iter",
-           "worst", "evals", "fact", "most", "linear", "residual", "minim", "move", "lag", "rms");
+    printf("\n%d unknowns, %d clusters, %d elements; setup %.2f s; factor %.1f MB, peak above start %.2f "
+           "factors\n",
+           3 * b->mesh.vertex_count, b->model->clusters.count, b->model->lattice.element_count, b->setup,
+           factor / 1e6, ratio);
+    printf("%-13s %s %8s %8s %8s | %6s %6s | %6s %6s | %s | %5s %5s %5s %4s %4s %7s | %8s %5s %5s %5s %5s\n",
+           "method", "t", "median s", "worst s", "to mark", "units", "worst", "counts", "worst",
+           "asmb  fact  solve  E+g ", "iter", "worst", "evals", "fact", "most", "linear", "residual", "minim",
+           "move", "lag", "rms");
     for (int v = 0; v < count; v++) {
         if (runs[v].count) {
             print_row(&runs[v]);
@@ -389,11 +428,11 @@ static bool is_listed(const char* list, const char* name) {
     return !list;
 }
 
-static ruga_status create(bench* b, int unknowns, int clusters, int frames) {
+static ruga_status create(bench* b, int unknowns, int clusters, const options* o) {
     ruga_model_def def = ruga_default_model_def();
     ruga_keyframe_def keys[3];
     RUGA_TRY(make_pillow(unknowns, &b->mesh));
-    fill(&def, &b->mesh, keys, frames);
+    fill(&def, &b->mesh, keys, o);
     def.coupling.count = clusters;
     reset_peak();
     b->bytes_before = process_bytes("VmRSS:");
@@ -436,7 +475,7 @@ static ruga_status bench_case(int unknowns, int clusters, options* o) {
     run runs[2 * METHODS] = {{.count = 0}};
     double *rest = NULL, *start[2] = {NULL, NULL}, *next[2] = {NULL, NULL};
     int count = METHODS * o->thread_count;
-    RUGA_TRY_DONE(create(&b, unknowns, clusters, o->frames));
+    RUGA_TRY_DONE(create(&b, unknowns, clusters, o));
     RUGA_TRY_DONE(RUGA_NEW(rest, ruga_state_restart_size(b.model)));
     ruga_state_save(b.state, rest);
     for (int motion = 0; motion < 2; motion++) {
@@ -488,6 +527,8 @@ static bool read_option(options* o, const char* name, const char* value) {
         o->slow_frames = atoi(value);
     } else if (strcmp(name, "--methods") == 0) {
         o->methods = value;
+    } else if (strcmp(name, "--relaxation") == 0) {
+        o->relaxation = atof(value);
     } else if (strcmp(name, "--threads") == 0) {
         o->thread_count = sscanf(value, "%d,%d", &o->threads[0], &o->threads[1]);
     } else if (strcmp(name, "--json") == 0) {
@@ -496,11 +537,12 @@ static bool read_option(options* o, const char* name, const char* value) {
     } else if (strcmp(name, "--residuals") == 0) {
         o->residuals = fopen(value, "w");
         return o->residuals && fputs("unknowns,method,threads,frame,iteration,seconds,residual,energy,"
-                                     "factorizations,energies\n", o->residuals) >= 0;
+                                     "factorizations,energies\n",
+                                     o->residuals) >= 0;
     } else {
         return false;
     }
-    return o->thread_count > 0;
+    return o->thread_count > 0 && o->relaxation > 0;
 }
 
 static bool read_arguments(int argc, char** argv, options* o) {
@@ -524,14 +566,20 @@ static bool read_arguments(int argc, char** argv, options* o) {
 
 int main(int argc, char** argv) {
     static const int usual[][2] = {{3138, 0}, {12534, 0}, {28194, 0}, {28194, 2108}};
-    options o = {.frames = 20, .slow_frames = 1, .threads = {1}, .thread_count = 1, .first_row = true};
+    options o = {.frames = 20,
+                 .slow_frames = 1,
+                 .threads = {1},
+                 .thread_count = 1,
+                 .relaxation = 20e-3,
+                 .first_row = true};
     if (!read_arguments(argc, argv, &o)) {
         (void)fprintf(stderr, "bench: see the head of tests/bench/bench.c for the arguments\n");
         return 2;
     }
     int count = o.case_count ? o.case_count : 4;
     for (int k = 0; k < count; k++) {
-        int unknowns = o.case_count ? o.unknowns[k] : usual[k][0], clusters = o.case_count ? o.clusters[k] : usual[k][1];
+        int unknowns = o.case_count ? o.unknowns[k] : usual[k][0],
+            clusters = o.case_count ? o.clusters[k] : usual[k][1];
         if (bench_case(unknowns, clusters, &o) != RUGA_OK) {
             (void)fprintf(stderr, "%s\n", ruga_last_error());
             return 1;
