@@ -12,7 +12,6 @@
 #include <string.h>
 
 enum { PAIRS = 8, REFRESH = 16, MAX_ITERATIONS = 3000 };
-static const double NEAR = 1e-2; // residual below which the exact Hessian is worth a trial
 enum { GRADIENT, PROJECTED, DIRECTION, OLD_GRADIENT, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
 
 typedef struct memory {
@@ -95,11 +94,11 @@ static ruga_status iterate(ruga_skin* skin, memory* m, double* x, double* gradie
     return RUGA_OK;
 }
 
-// Near a minimum the exact Hessian is convex again, and its factor ends the solve in a few steps: the clamped one is up to
-// ten times too stiff along the soft directions, which wrinkles slide and grow along. With the proximal term it mostly is convex from the start.
-static ruga_status renew_factor(ruga_skin* skin, const double* x, double residual, memory* m) {
+// With a proximal term the exact Hessian mostly is convex, and better than the clamped one, which is up to ten times too
+// stiff along the soft directions. Without, it fails too often while wrinkles slide, even where the residual is small.
+static ruga_status renew_factor(ruga_skin* skin, const double* x, memory* m) {
     *m = (memory){.gamma = 1, .newest = -1};
-    if (residual < NEAR || skin->proximal > 0) {
+    if (skin->proximal > 0) {
         RUGA_TRY(ruga_skin_factor(skin, x, 0, 0));
         if (skin->factor_right) {
             return RUGA_OK;
@@ -132,7 +131,7 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
             score = REFRESH;
         }
         if (score >= REFRESH) {
-            RUGA_TRY(renew_factor(skin, x, result->residual, &m));
+            RUGA_TRY(renew_factor(skin, x, &m));
             score = 0;
             continue;
         }
