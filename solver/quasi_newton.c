@@ -94,11 +94,12 @@ static ruga_status iterate(ruga_skin* skin, memory* m, double* x, double* gradie
     return RUGA_OK;
 }
 
-// With a proximal term the exact Hessian mostly is convex, and better than the clamped one, which is up to ten times too
-// stiff along the soft directions. Without, it fails too often while wrinkles slide, even where the residual is small.
+// A proximal term stiffer than a wrinkle (three shift units, docs/method.md) mostly makes the exact Hessian convex, which is
+// better than the clamped one: that is up to ten times too stiff along the soft directions. With less, or none, it fails
+// too often while wrinkles slide, even where the residual is small.
 static ruga_status renew_factor(ruga_skin* skin, const double* x, memory* m) {
     *m = (memory){.gamma = 1, .newest = -1};
-    if (skin->proximal > 0) {
+    if (skin->proximal > 3 * ruga_skin_shift_unit(skin->model)) {
         RUGA_TRY(ruga_skin_factor(skin, x, 0, 0));
         if (skin->factor_right) {
             return RUGA_OK;
