@@ -9,8 +9,9 @@
 
 double ruga_skin_residual(ruga_skin* skin, const double* projected, const ruga_skin_terms* terms) {
     double residual = sqrt(ruga_dot_product(skin->n, projected, projected)) / terms->force_reference;
-    if (residual <= skin->watched_residual && skin->watched_clock == 0) {
-        skin->watched_clock = ruga_clock();
+    if (skin->trace_count < skin->trace_size) {
+        skin->trace[skin->trace_count++] = (ruga_skin_trace){ruga_clock(), residual, terms->total,
+                                                             skin->work.factorizations, skin->work.energies};
     }
     return residual;
 }
@@ -35,6 +36,7 @@ ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double t
         return RUGA_OK;
     }
     RUGA_TRY(ruga_skin_factor(skin, x, 0, 0));
+    skin->work.certificates++;
     if (skin->factor_right) {
         result->outcome = RUGA_OUTCOME_MINIMUM;
         return RUGA_OK;

@@ -94,6 +94,20 @@ static ruga_status iterate(ruga_skin* skin, memory* m, double* x, double* gradie
     return RUGA_OK;
 }
 
+// A proximal term stiffer than a wrinkle (three shift units, docs/method.md) mostly makes the exact Hessian convex, which is
+// better than the clamped one: that is up to ten times too stiff along the soft directions. With less, or none, it fails
+// too often while wrinkles slide, even where the residual is small.
+static ruga_status renew_factor(ruga_skin* skin, const double* x, memory* m) {
+    *m = (memory){.gamma = 1, .newest = -1};
+    if (skin->proximal > 3 * ruga_skin_shift_unit(skin->model)) {
+        RUGA_TRY(ruga_skin_factor(skin, x, 0, 0));
+        if (skin->factor_right) {
+            return RUGA_OK;
+        }
+    }
+    return ruga_skin_factor_convex(skin, x);
+}
+
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result) {
     double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
@@ -118,8 +132,7 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
             score = REFRESH;
         }
         if (score >= REFRESH) {
-            RUGA_TRY(ruga_skin_factor_convex(skin, x));
-            m = (memory){.gamma = 1, .newest = -1};
+            RUGA_TRY(renew_factor(skin, x, &m));
             score = 0;
             continue;
         }

@@ -403,6 +403,7 @@ ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* 
     double proximal = skin->proximal > 0 ? add_proximal(skin, x, gradient) : 0;
     terms->total = terms->membrane + terms->bending + terms->foundation + terms->external + proximal;
     terms->force_reference = fmax(sqrt(force_square), ruga_model_force_floor(model));
+    skin->work.energies++;
     skin->work.seconds_energy += ruga_clock() - begin;
     return RUGA_OK;
 }
@@ -452,6 +453,7 @@ static ruga_status factorize(ruga_skin* skin, double shift) {
     RUGA_TRY(ruga_factor_numeric(skin->factor, skin->kkt.value, &skin->info));
     skin->factor_right = skin->m ? skin->info.negative == skin->m && skin->info.zero == 0 : skin->info.success;
     skin->work.factorizations++;
+    skin->work.failures += !skin->factor_right;
     skin->work.seconds_assembly += filled - begin;
     skin->work.seconds_factor += ruga_clock() - filled;
     return RUGA_OK;

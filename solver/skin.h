@@ -13,17 +13,12 @@
 #include "shell/shell.h"
 #include "solver/linear.h"
 #include "solver/model.h"
+#include "solver/work.h"
 
 typedef struct ruga_skin_terms {
     double total, membrane, bending, foundation, external; // J
     double force_reference;                               // f_ref, N
 } ruga_skin_terms;
-
-// Work done by the methods, added up over a step.
-typedef struct ruga_skin_work {
-    int iterations, linear_iterations, factorizations;
-    double seconds_assembly, seconds_factor, seconds_solve, seconds_energy;
-} ruga_skin_work;
 
 typedef struct ruga_skin {
     const ruga_model* model;
@@ -59,8 +54,8 @@ typedef struct ruga_skin {
     double* mass;           // [V] kg
     ruga_skin_work work;
 
-    // Benchmarks: seconds on the clock when the residual first passed `watched_residual`; 0 = not yet.
-    double watched_residual, watched_clock;
+    ruga_skin_trace* trace; // of each residual, for benchmarks: NULL or [trace_size]
+    int trace_size, trace_count;
 } ruga_skin;
 
 ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** skin);
@@ -112,7 +107,6 @@ typedef struct ruga_skin_result {
 // inertia at zero shift; without it a small residual is reported as minimum.
 ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                ruga_skin_result* result);
-
 ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                  ruga_skin_result* result);
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,

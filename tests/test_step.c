@@ -499,6 +499,42 @@ static void a_skin_of_directors_is_solved_with_its_interior(void** state) {
 }
 
 // With an argument: only the tests whose name matches it.
+// The interior jumps past onset and then stands still: the skin comes after, downhill all the way, each frame a
+// certified minimum, to where a static solve has nothing left to do.
+static void a_damped_skin_comes_to_rest_at_a_static_minimum(void** state) {
+    (void)state;
+    small_scene s;
+    scene_sheet(&s, 3, 1.5, 6, 0);
+    s.key[1].matrix[0] = 0.96;
+    s.def.keyframe_count = 2;
+    s.def.skin.motion = RUGA_SKIN_DAMPED;
+    s.def.skin.relaxation = s.def.step;
+    scene_build(&s);
+    ruga_skin* skin = s.state->skin;
+    double *gradient = scene_array(skin->n), last = INFINITY, residual = 0;
+    for (int k = 1; k <= 30; k++) {
+        ruga_report report;
+        ruga_skin_terms terms;
+        assert_ok(ruga_state_step(s.model, s.state, &report));
+        assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+        skin->proximal = 0;
+        assert_ok(ruga_skin_energy(skin, s.state->x, &terms, gradient));
+        assert_ok(ruga_skin_project(skin, gradient, gradient));
+        residual = ruga_skin_residual(skin, gradient, &terms);
+        assert_true(terms.total <= last * (1 + 1e-12));
+        last = terms.total;
+        if (k == 1) {
+            assert_true(residual > 1e-3); // it lags
+        }
+    }
+    print_message("static residual %.2e\n", residual);
+    assert_true(residual < 1e-4);
+    assert_ok(ruga_skin_factor(skin, s.state->x, 0, 0));
+    assert_true(skin->factor_right);
+    free(gradient);
+    scene_free(&s);
+}
+
 int main(int argc, char** argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_falling_body_follows_implicit_euler),
@@ -508,6 +544,7 @@ int main(int argc, char** argv) {
         cmocka_unit_test(a_dynamic_run_goes_on_with_the_same_bits),
         cmocka_unit_test(a_quasistatic_run_goes_on_with_the_same_bits),
         cmocka_unit_test(a_prescribed_run_goes_on_with_the_same_bits),
+        cmocka_unit_test(a_damped_skin_comes_to_rest_at_a_static_minimum),
         cmocka_unit_test(a_jump_past_onset_is_split_and_a_small_step_is_not),
         cmocka_unit_test(near_dependent_rows_are_kept),
         cmocka_unit_test(a_first_pose_is_solved_for),

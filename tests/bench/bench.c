@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// Seconds per frame of the static solve on the 50 cm pillow (h = 0.7 mm, E ratio 1e4, E_q = 50 kPa, 50 lattice
-// elements): from flat to 1 % compression in 5 frames, then measured frames of 0.2 % more and a 1 mm deeper bump,
-// 20 ms each. Every method starts each measured frame from the same state, that of the default method; those that
-// use MINRES take minutes and run the first measured frame only. Where the published method stops short of the
-// tolerance, the times at which both first pass its final residual are compared. Prints a table; with a file name as
-// second argument also JSON. RUGA_BENCH_SKIP in the environment names methods to leave out, with
-// commas between them.
+// Cost of a frame of the static solve on the 50 cm pillow (h = 0.7 mm, E ratio 1e4, E_q = 50 kPa): from flat
+// to 1 % compression in 5 frames, then measured frames of 0.2 % more and a 1 mm deeper bump, 20 ms each. The
+// unit is one numeric factorisation of the frame's matrix, timed in the same run right after the frame.
+// `quasi-newton`, and `damped` (the same with motion: damped), each go their own way; the other methods start
+// each frame from the states of quasi-newton. Those that use MINRES take minutes and run --slow-frames only.
+// Where the published method stops short of the tolerance, the time at which another first passes its final
+// residual is printed as `to mark`.
+//     bench [--frames N] [--slow-frames N] [--methods A,B] [--threads N,M] [--per-frame] [--json FILE]
+//           [--residuals FILE.csv] [--relaxation SECONDS] [UNKNOWNS[:CLUSTERS] ...]
+// --residuals writes residual, energy and work spent at each iteration.
 #include "core/memory.h"
 #include "core/progress.h"
+#include "core/vec3.h"
 #include "mesh/make.h"
+#include "ruga/ruga.h"
 #include "solver/model.h"
 #include "solver/state.h"
 
@@ -19,50 +24,61 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WARM = 5, MAX_FRAMES = 20, METHODS = 4 };
+enum { WARM = 5, MAX_FRAMES = 20, METHODS = 5, MAX_CASES = 16, TRACE = 100000, TIMINGS = 3 };
+enum { QUASI_NEWTON, DAMPED, PAPER = METHODS - 1 };
 
 typedef struct variant {
     const char* name;
     ruga_method method;
     ruga_linear_kind linear;
+    ruga_skin_motion motion;
+    bool slow;
 } variant;
 
 static const variant variants[METHODS] = {
-    {"quasi-newton", RUGA_METHOD_QUASI_NEWTON, RUGA_LINEAR_DIRECT},
-    {"newton", RUGA_METHOD_NEWTON, RUGA_LINEAR_DIRECT},
-    {"newton-minres", RUGA_METHOD_NEWTON, RUGA_LINEAR_MINRES},
-    {"paper", RUGA_METHOD_PAPER, RUGA_LINEAR_DIRECT},
+    {"quasi-newton", RUGA_METHOD_QUASI_NEWTON, RUGA_LINEAR_DIRECT, RUGA_SKIN_STATIC, false},
+    {"damped", RUGA_METHOD_QUASI_NEWTON, RUGA_LINEAR_DIRECT, RUGA_SKIN_DAMPED, false},
+    {"newton", RUGA_METHOD_NEWTON, RUGA_LINEAR_DIRECT, RUGA_SKIN_STATIC, false},
+    {"newton-minres", RUGA_METHOD_NEWTON, RUGA_LINEAR_MINRES, RUGA_SKIN_STATIC, true},
+    {"paper", RUGA_METHOD_PAPER, RUGA_LINEAR_DIRECT, RUGA_SKIN_STATIC, true},
 };
 
-static bool is_skipped(const char* name) {
-    const char* list = getenv("RUGA_BENCH_SKIP");
-    size_t length = strlen(name);
-    for (; list && *list; list += *list == ',') {
-        if (strncmp(list, name, length) == 0 && (list[length] == ',' || !list[length])) {
-            return true;
-        }
-        list += strcspn(list, ",");
-    }
-    return false;
-}
+typedef struct options {
+    int frames, slow_frames, threads[2], thread_count, case_count;
+    int unknowns[MAX_CASES], clusters[MAX_CASES];
+    const char* methods;
+    double relaxation; // of damped motion
+    bool per_frame;
+    FILE *json, *residuals;
+    bool first_row;
+} options;
 
-typedef struct figures {
-    double seconds[MAX_FRAMES], assembly, factor, solve, energy, iterations, linear, factorizations;
-    double residual, worst_residual, pass[MAX_FRAMES];
-    int minima, frames;
-} figures;
+// One measured frame of one method.
+typedef struct frame {
+    ruga_report report;
+    ruga_skin_work work;
+    double units, unit, move; // time in units; seconds of a unit; largest change of x - Bq, in h
+    double to_mark;           // seconds until the published method's residual was passed
+    double lag_max, lag_rms;  // distance to the minimum below a damped state, in h
+} frame;
 
-static int compare(const void* a, const void* b) {
-    double x = *(const double*)a, y = *(const double*)b;
-    return (x > y) - (x < y);
-}
+typedef struct run {
+    const variant* variant;
+    int threads, count;
+    frame frames[MAX_FRAMES];
+    double* start; // restart vector of the next frame
+} run;
 
-static double median(const double* values, int count) {
-    double sorted[MAX_FRAMES];
-    memcpy(sorted, values, (size_t)count * sizeof *sorted);
-    qsort(sorted, (size_t)count, sizeof *sorted, compare);
-    return count ? 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]) : 0;
-}
+typedef struct bench {
+    ruga_mesh mesh;
+    ruga_model* model;
+    ruga_state* state;
+    ruga_skin_trace* trace;
+    double *old_deviation, *relaxed, marks[MAX_FRAMES], setup;
+    size_t bytes_before;
+} bench;
+
+// ---- the scene -----------------------------------------------------------------------------------------
 
 static ruga_status make_pillow(int unknowns, ruga_mesh* mesh) {
     double low = 1e-3, high = 0.2;
@@ -83,7 +99,8 @@ static ruga_status make_pillow(int unknowns, ruga_mesh* mesh) {
     return RUGA_OK;
 }
 
-static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def keys[3], int frames) {
+static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def keys[3], const options* o) {
+    int frames = o->frames;
     def->mesh = ruga_mesh_as_def(mesh);
     def->skin.thickness = 0.7e-3;
     def->skin.young = 500e6;
@@ -91,6 +108,7 @@ static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def k
     def->interior.motion = RUGA_INTERIOR_PRESCRIBED;
     def->lattice.cells = 5;
     def->solver.allow_coarse = true;
+    def->skin.relaxation = o->relaxation;
     for (int k = 0; k < 3; k++) {
         keys[k] = ruga_default_keyframe_def();
         keys[k].has_bump = true;
@@ -107,130 +125,472 @@ static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def k
     def->frames = WARM + frames;
 }
 
-static ruga_status run_frame(ruga_model* model, ruga_state* state, const variant* v, const double* start,
-                             double watched, int frame, figures* f) {
-    ruga_report report;
-    model->solver.method = v->method;
-    model->solver.linear = v->linear;
-    RUGA_TRY(ruga_state_load(state, start));
-    state->skin->watched_residual = watched;
-    state->skin->watched_clock = 0;
-    double begin = ruga_clock();
-    RUGA_TRY(ruga_state_step(model, state, &report));
-    f->seconds[frame] = report.seconds_total;
-    f->pass[frame] = state->skin->watched_clock > 0 ? state->skin->watched_clock - begin : report.seconds_total;
-    f->assembly += report.seconds_assembly;
-    f->factor += report.seconds_factor;
-    f->solve += report.seconds_solve;
-    f->energy += state->skin->work.seconds_energy;
-    f->iterations += report.newton_iterations;
-    f->linear += report.linear_iterations;
-    f->factorizations += report.factorizations;
-    f->residual = report.residual_shell;
-    f->worst_residual = fmax(f->worst_residual, report.residual_shell);
-    f->minima += report.outcome == RUGA_OUTCOME_MINIMUM;
-    f->frames = frame + 1;
+// ---- memory of the process -----------------------------------------------------------------------------
+
+// A line "NAME: value kB" of /proc/self/status, in bytes; 0 where there is none.
+static size_t process_bytes(const char* name) {
+    char line[256];
+    size_t kilobytes = 0, length = strlen(name);
+    FILE* file = fopen("/proc/self/status", "r");
+    while (file && fgets(line, sizeof line, file)) {
+        if (strncmp(line, name, length) == 0) {
+            kilobytes = strtoul(line + length, NULL, 10);
+        }
+    }
+    if (file) {
+        (void)fclose(file);
+    }
+    return 1024 * kilobytes;
+}
+
+static void reset_peak(void) {
+    FILE* file = fopen("/proc/self/clear_refs", "w");
+    if (file) {
+        (void)fputs("5", file);
+        (void)fclose(file);
+    }
+}
+
+// ---- one frame -----------------------------------------------------------------------------------------
+
+static int compare(const void* a, const void* b) {
+    double x = *(const double*)a, y = *(const double*)b;
+    return (x > y) - (x < y);
+}
+
+static double median(const double* values, int count) {
+    double sorted[MAX_FRAMES];
+    memcpy(sorted, values, (size_t)count * sizeof *sorted);
+    qsort(sorted, (size_t)count, sizeof *sorted, compare);
+    return count ? 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]) : 0;
+}
+
+// Seconds of one numeric factorisation of the matrix at x, its assembly not counted.
+static ruga_status time_unit(ruga_state* state, double* unit) {
+    double seconds[TIMINGS];
+    for (int k = 0; k < TIMINGS; k++) {
+        double before = state->skin->work.seconds_factor;
+        RUGA_TRY(k == 0 ? ruga_skin_factor(state->skin, state->x, 0, 0) : ruga_skin_refactor(state->skin, 0));
+        seconds[k] = state->skin->work.seconds_factor - before;
+    }
+    *unit = median(seconds, TIMINGS);
     return RUGA_OK;
 }
 
-static ruga_status bench_case(int unknowns, int frames, int paper_frames, FILE* json, bool* first) {
-    ruga_status status = RUGA_OK;
-    ruga_mesh mesh = {0};
-    ruga_model* model = NULL;
-    ruga_state* state = NULL;
-    double *restart = NULL, *next = NULL, *watched = NULL, setup = ruga_clock();
-    figures f[METHODS] = {{{0}, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0}, 0, 0}};
-    ruga_model_def def = ruga_default_model_def();
-    ruga_keyframe_def keys[3];
-    RUGA_TRY_DONE(make_pillow(unknowns, &mesh));
-    fill(&def, &mesh, keys, frames);
-    RUGA_TRY_DONE(ruga_model_create(&def, &model));
-    RUGA_TRY_DONE(ruga_state_create(model, &state));
-    setup = ruga_clock() - setup;
-    RUGA_TRY_DONE(RUGA_NEW(restart, ruga_state_restart_size(model)));
-    RUGA_TRY_DONE(RUGA_NEW(next, ruga_state_restart_size(model)));
-    RUGA_TRY_DONE(RUGA_NEW_ZERO(watched, MAX_FRAMES));
-    for (int k = 0; k < WARM; k++) {
-        RUGA_TRY_DONE(ruga_state_step(model, state, NULL));
+static double largest_difference(int n, const double* a, const double* b, double* rms) {
+    double most = 0, sum = 0;
+    for (int i = 0; i < n; i += 3) {
+        double square = 0;
+        for (int k = 0; k < 3; k++) {
+            square += (a[i + k] - b[i + k]) * (a[i + k] - b[i + k]);
+        }
+        most = fmax(most, square);
+        sum += square;
     }
-    ruga_state_save(state, restart);
-    for (int k = 0; k < frames; k++) {
-        // The published method first: its final residual is the mark for the others.
-        for (int v = METHODS - 1; v >= 0; v--) {
-            bool minutes = v >= METHODS - 2;
-            if ((minutes && k >= paper_frames) || is_skipped(variants[v].name)) {
-                continue;
-            }
-            RUGA_TRY_DONE(run_frame(model, state, &variants[v], restart, watched[k], k, &f[v]));
-            if (v == METHODS - 1) {
-                watched[k] = f[v].residual;
-            }
-        }
-        ruga_state_save(state, next);
-        memcpy(restart, next, (size_t)ruga_state_restart_size(model) * sizeof *restart);
+    *rms = sqrt(sum / (n / 3));
+    return sqrt(most);
+}
+
+static void deviation(const ruga_state* state, double* d) {
+    for (int i = 0; i < state->skin->n; i++) {
+        d[i] = state->x[i] - state->embedded[i];
     }
-    printf("\n%d unknowns, %d clusters, %d elements, setup %.2f s\n", 3 * mesh.vertex_count, model->clusters.count,
-           model->lattice.element_count, setup);
-    printf("%-14s %9s %9s %9s | %8s %8s %8s %8s | %6s %8s %5s | %9s %7s\n", "method", "median s", "worst s",
-           "to mark", "assembly", "factor", "solve", "energy", "iter", "linear", "fact", "residual", "minima");
-    for (int v = 0; v < METHODS; v++) {
-        int n = f[v].frames, marks = n < paper_frames ? n : paper_frames;
-        double worst = 0;
-        if (n == 0) {
-            continue;
-        }
-        for (int k = 0; k < f[v].frames; k++) {
-            worst = fmax(worst, f[v].seconds[k]);
-        }
-        printf("%-14s %9.3f %9.3f %9.3f | %8.3f %8.3f %8.3f %8.3f | %6.0f %8.0f %5.1f | %9.1e %3d/%-3d\n",
-               variants[v].name, median(f[v].seconds, f[v].frames), worst, median(f[v].pass, marks), f[v].assembly / n,
-               f[v].factor / n, f[v].solve / n, f[v].energy / n, f[v].iterations / n, f[v].linear / n,
-               f[v].factorizations / n, f[v].worst_residual, f[v].minima, f[v].frames);
-        if (json) {
-            fprintf(json,
-                    "%s\n{\"unknowns\": %d, \"clusters\": %d, \"method\": \"%s\", \"median\": %.4g, \"worst\": %.4g, "
-                    "\"to_mark\": %.4g, \"assembly\": %.4g, \"factor\": %.4g, \"solve\": %.4g, \"energy\": %.4g, "
-                    "\"iterations\": %.4g, \"linear\": %.4g, \"factorizations\": %.4g, \"residual\": %.4g, "
-                    "\"minima\": %d, \"frames\": %d}",
-                    *first ? "[" : ",", 3 * mesh.vertex_count, model->clusters.count, variants[v].name,
-                    median(f[v].seconds, f[v].frames), worst, median(f[v].pass, marks), f[v].assembly / n,
-                    f[v].factor / n, f[v].solve / n, f[v].energy / n, f[v].iterations / n, f[v].linear / n,
-                    f[v].factorizations / n, f[v].worst_residual, f[v].minima, f[v].frames);
-            *first = false;
+}
+
+// How far a damped state is from the minimum that it would go to.
+static ruga_status measure_lag(bench* b, frame* f) {
+    ruga_skin* skin = b->state->skin;
+    ruga_skin_result result;
+    double proximal = skin->proximal, h = b->model->skin.thickness;
+    memcpy(b->relaxed, b->state->x, (size_t)skin->n * sizeof *b->relaxed);
+    skin->proximal = 0;
+    skin->factor_right = false;
+    RUGA_TRY(ruga_skin_minimize(skin, b->relaxed, b->model->solver.tolerance, true, &result));
+    skin->proximal = proximal;
+    f->lag_max = largest_difference(skin->n, b->relaxed, b->state->x, &f->lag_rms) / h;
+    f->lag_rms /= h;
+    return RUGA_OK;
+}
+
+static void write_residuals(const bench* b, const run* r, int index, double begin, FILE* file) {
+    for (int k = 0; k < b->state->skin->trace_count; k++) {
+        const ruga_skin_trace* t = &b->trace[k];
+        (void)fprintf(file, "%d,%s,%d,%d,%d,%.6g,%.6e,%.12e,%d,%d\n", 3 * b->mesh.vertex_count,
+                      r->variant->name, r->threads, index, k, t->clock - begin, t->residual, t->energy,
+                      t->factorizations, t->energies);
+    }
+}
+
+static ruga_status run_frame(bench* b, run* r, const double* start, int index, options* o) {
+    ruga_state* state = b->state;
+    ruga_skin* skin = state->skin;
+    frame* f = &r->frames[index];
+    double unused, begin;
+    b->model->solver.method = r->variant->method;
+    b->model->solver.linear = r->variant->linear;
+    b->model->skin.motion = r->variant->motion;
+    ruga_set_threads(r->threads);
+    RUGA_TRY(ruga_state_load(state, start));
+    deviation(state, b->old_deviation);
+    skin->trace_count = 0;
+    begin = ruga_clock();
+    RUGA_TRY(ruga_state_step(b->model, state, &f->report));
+    f->work = skin->work;
+    int traced = skin->trace_count;
+    f->to_mark = f->report.seconds_total;
+    for (int k = traced - 1; k >= 0; k--) {
+        f->to_mark = b->trace[k].residual <= b->marks[index] ? b->trace[k].clock - begin : f->to_mark;
+    }
+    if (o->residuals) {
+        write_residuals(b, r, index, begin, o->residuals);
+    }
+    if (r->start) {
+        ruga_state_save(state, r->start);
+    }
+    deviation(state, b->relaxed);
+    f->move = largest_difference(skin->n, b->relaxed, b->old_deviation, &unused) / b->model->skin.thickness;
+    RUGA_TRY(time_unit(state, &f->unit));
+    if (r->variant->motion == RUGA_SKIN_DAMPED) {
+        RUGA_TRY(measure_lag(b, f));
+    }
+    r->count = index + 1;
+    return RUGA_OK;
+}
+
+// ---- tables --------------------------------------------------------------------------------------------
+
+static int convex_factors(const ruga_skin_work* w) {
+    return w->factorizations - w->certificates;
+}
+
+// The column `offset` of all frames.
+static double column(const run* r, double (*value)(const frame*), bool worst) {
+    double values[MAX_FRAMES], most = 0;
+    for (int k = 0; k < r->count; k++) {
+        values[k] = value(&r->frames[k]);
+        most = fmax(most, values[k]);
+    }
+    return worst ? most : median(values, r->count);
+}
+
+static double seconds_of(const frame* f) {
+    return f->report.seconds_total;
+}
+static double units_of(const frame* f) {
+    return f->report.seconds_total / f->unit;
+}
+static double iterations_of(const frame* f) {
+    return f->report.newton_iterations;
+}
+static double factors_of(const frame* f) {
+    return f->report.factorizations;
+}
+static double energies_of(const frame* f) {
+    return f->work.energies;
+}
+static double failures_of(const frame* f) {
+    return f->work.failures;
+}
+static double linear_of(const frame* f) {
+    return f->report.linear_iterations;
+}
+static double move_of(const frame* f) {
+    return f->move;
+}
+static double residual_of(const frame* f) {
+    return f->report.residual_shell;
+}
+static double mark_of(const frame* f) {
+    return f->to_mark;
+}
+static double lag_max_of(const frame* f) {
+    return f->lag_max;
+}
+static double lag_rms_of(const frame* f) {
+    return f->lag_rms;
+}
+// A solve with its gradient costs about a twentieth of a factorisation: a measure that no other load
+// disturbs.
+static double counted_of(const frame* f) {
+    return f->report.factorizations + f->report.newton_iterations / 18.0;
+}
+
+static int minima(const run* r) {
+    int count = 0;
+    for (int k = 0; k < r->count; k++) {
+        count += r->frames[k].report.outcome == RUGA_OUTCOME_MINIMUM;
+    }
+    return count;
+}
+
+static void print_frames(const run* r) {
+    printf("%s, %d threads\n%5s %8s %7s %7s %5s %5s %5s %5s %5s %5s %5s %9s %7s %6s\n", r->variant->name,
+           r->threads, "frame", "seconds", "units", "counted", "iter", "evals", "fact", "conv", "cert",
+           "fail", "parts", "residual", "move/h", "lag/h");
+    for (int k = 0; k < r->count; k++) {
+        const frame* f = &r->frames[k];
+        printf("%5d %8.3f %7.1f %7.1f %5d %5d %5d %5d %5d %5d %5d %9.1e %7.2f %6.2f\n", k, seconds_of(f),
+               units_of(f), counted_of(f), f->report.newton_iterations, f->work.energies,
+               f->report.factorizations, convex_factors(&f->work), f->work.certificates, f->work.failures,
+               f->report.substeps, f->report.residual_shell, f->move, f->lag_max);
+    }
+}
+
+static void print_row(const run* r) {
+    double evaluations = 0, assembly = 0, factor = 0, solve = 0, energy = 0;
+    for (int k = 0; k < r->count; k++) {
+        const frame* f = &r->frames[k];
+        evaluations += f->work.energies / (double)r->count;
+        assembly += f->report.seconds_assembly / r->count / f->unit;
+        factor += f->report.seconds_factor / r->count / f->unit;
+        solve += f->report.seconds_solve / r->count / f->unit;
+        energy += f->work.seconds_energy / r->count / f->unit;
+    }
+    printf("%-13s %d %8.3f %8.3f %8.3f | %6.1f %6.1f | %6.1f %6.1f | %5.2f %5.1f %5.2f %5.2f | %5.0f %5.0f "
+           "%5.0f %4.1f "
+           "%4.0f %7.0f | %8.1e %2d/%-2d %5.1f %5.2f %5.2f\n",
+           r->variant->name, r->threads, column(r, seconds_of, false), column(r, seconds_of, true),
+           column(r, mark_of, false), column(r, units_of, false), column(r, units_of, true),
+           column(r, counted_of, false), column(r, counted_of, true), assembly, factor, solve, energy,
+           column(r, iterations_of, false), column(r, iterations_of, true), evaluations,
+           column(r, factors_of, false), column(r, factors_of, true), column(r, linear_of, false),
+           column(r, residual_of, true), minima(r), r->count, column(r, move_of, true),
+           column(r, lag_max_of, true), column(r, lag_rms_of, true));
+}
+
+static void write_json(const bench* b, const run* r, double memory_ratio, options* o) {
+    (void)fprintf(
+        o->json,
+        "%s\n{\"unknowns\": %d, \"clusters\": %d, \"elements\": %d, \"method\": \"%s\", \"threads\": %d, "
+        "\"setup\": %.4g, \"median\": %.4g, \"worst\": %.4g, \"to_mark\": %.4g, \"units_median\": %.4g, "
+        "\"units_worst\": %.4g, \"unit_seconds\": %.4g, \"minima\": %d, \"memory_over_factor\": %.4g, "
+        "\"frames\": [",
+        o->first_row ? "[" : ",", 3 * b->mesh.vertex_count, b->model->clusters.count,
+        b->model->lattice.element_count, r->variant->name, r->threads, b->setup, column(r, seconds_of, false),
+        column(r, seconds_of, true), column(r, mark_of, false), column(r, units_of, false),
+        column(r, units_of, true), r->frames[0].unit, minima(r), memory_ratio);
+    o->first_row = false;
+    for (int k = 0; k < r->count; k++) {
+        const frame* f = &r->frames[k];
+        (void)fprintf(
+            o->json,
+            "%s\n  {\"seconds\": %.4g, \"units\": %.4g, \"counted\": %.4g, \"iterations\": %d, "
+            "\"linear\": %d, \"energies\": %d, \"factorizations\": %d, \"certificates\": %d, \"failed\": "
+            "%.0f, "
+            "\"substeps\": %d, \"residual\": %.4g, \"outcome\": %d, \"move\": %.4g, \"lag_max\": %.4g, "
+            "\"lag_rms\": %.4g}",
+            k ? "," : "", seconds_of(f), units_of(f), counted_of(f), f->report.newton_iterations,
+            f->report.linear_iterations, (int)energies_of(f), f->report.factorizations, f->work.certificates,
+            failures_of(f), f->report.substeps, f->report.residual_shell, (int)f->report.outcome, f->move,
+            f->lag_max, f->lag_rms);
+    }
+    (void)fprintf(o->json, "]}");
+}
+
+static void report(bench* b, const run* runs, int count, options* o) {
+    double factor = (double)ruga_factor_bytes(b->state->skin->factor);
+    size_t peak = process_bytes("VmHWM:");
+    double ratio = peak > b->bytes_before ? (double)(peak - b->bytes_before) / factor : 0;
+    printf("\n%d unknowns, %d clusters, %d elements; setup %.2f s; factor %.1f MB, peak above start %.2f "
+           "factors\n",
+           3 * b->mesh.vertex_count, b->model->clusters.count, b->model->lattice.element_count, b->setup,
+           factor / 1e6, ratio);
+    printf("%-13s %s %8s %8s %8s | %6s %6s | %6s %6s | %s | %5s %5s %5s %4s %4s %7s | %8s %5s %5s %5s %5s\n",
+           "method", "t", "median s", "worst s", "to mark", "units", "worst", "counts", "worst",
+           "asmb  fact  solve  E+g ", "iter", "worst", "evals", "fact", "most", "linear", "residual", "minim",
+           "move", "lag", "rms");
+    for (int v = 0; v < count; v++) {
+        if (runs[v].count) {
+            print_row(&runs[v]);
         }
     }
-    if (f[METHODS - 1].frames) {
-        printf("quasi-newton passes the published method's final residual %.1f times sooner\n",
-               median(f[METHODS - 1].seconds, f[METHODS - 1].frames) / median(f[0].pass, f[METHODS - 1].frames));
+    for (int v = 0; v < count; v++) {
+        if (runs[v].count && o->per_frame) {
+            print_frames(&runs[v]);
+        }
+        if (runs[v].count && o->json) {
+            write_json(b, &runs[v], ratio, o);
+        }
     }
     (void)fflush(stdout);
+}
+
+// ---- one case ------------------------------------------------------------------------------------------
+
+static bool is_listed(const char* list, const char* name) {
+    size_t length = strlen(name);
+    for (; list && *list; list += *list == ',') {
+        if (strncmp(list, name, length) == 0 && (list[length] == ',' || !list[length])) {
+            return true;
+        }
+        list += strcspn(list, ",");
+    }
+    return !list;
+}
+
+static ruga_status create(bench* b, int unknowns, int clusters, const options* o) {
+    ruga_model_def def = ruga_default_model_def();
+    ruga_keyframe_def keys[3];
+    RUGA_TRY(make_pillow(unknowns, &b->mesh));
+    fill(&def, &b->mesh, keys, o);
+    def.coupling.count = clusters;
+    reset_peak();
+    b->bytes_before = process_bytes("VmRSS:");
+    b->setup = ruga_clock();
+    RUGA_TRY(ruga_model_create(&def, &b->model));
+    RUGA_TRY(ruga_state_create(b->model, &b->state));
+    b->setup = ruga_clock() - b->setup;
+    RUGA_TRY(RUGA_NEW(b->old_deviation, 3 * b->mesh.vertex_count));
+    RUGA_TRY(RUGA_NEW(b->relaxed, 3 * b->mesh.vertex_count));
+    RUGA_TRY(RUGA_NEW(b->trace, TRACE));
+    b->state->skin->trace = b->trace;
+    b->state->skin->trace_size = TRACE;
+    return RUGA_OK;
+}
+
+static void destroy(bench* b) {
+    ruga_release(b->old_deviation);
+    ruga_release(b->relaxed);
+    ruga_release(b->trace);
+    ruga_state_destroy(&b->state);
+    ruga_model_destroy(&b->model);
+    ruga_mesh_clear(&b->mesh);
+}
+
+// The frames up to the first measured one, static or damped.
+static ruga_status warm(bench* b, ruga_skin_motion motion, const double* rest, double* start) {
+    b->model->solver.method = RUGA_METHOD_QUASI_NEWTON;
+    b->model->skin.motion = motion;
+    RUGA_TRY(ruga_state_load(b->state, rest));
+    for (int k = 0; k < WARM; k++) {
+        RUGA_TRY(ruga_state_step(b->model, b->state, NULL));
+    }
+    ruga_state_save(b->state, start);
+    return RUGA_OK;
+}
+
+static ruga_status bench_case(int unknowns, int clusters, options* o) {
+    ruga_status status = RUGA_OK;
+    bench b = {.model = NULL};
+    run runs[2 * METHODS] = {{.count = 0}};
+    double *rest = NULL, *start[2] = {NULL, NULL}, *next[2] = {NULL, NULL};
+    int count = METHODS * o->thread_count;
+    RUGA_TRY_DONE(create(&b, unknowns, clusters, o));
+    RUGA_TRY_DONE(RUGA_NEW(rest, ruga_state_restart_size(b.model)));
+    ruga_state_save(b.state, rest);
+    for (int motion = 0; motion < 2; motion++) {
+        RUGA_TRY_DONE(RUGA_NEW(start[motion], ruga_state_restart_size(b.model)));
+        RUGA_TRY_DONE(RUGA_NEW(next[motion], ruga_state_restart_size(b.model)));
+        if (motion == 0 || is_listed(o->methods, variants[DAMPED].name)) {
+            RUGA_TRY_DONE(warm(&b, motion ? RUGA_SKIN_DAMPED : RUGA_SKIN_STATIC, rest, start[motion]));
+        }
+    }
+    for (int v = 0; v < count; v++) {
+        int kind = v % METHODS;
+        runs[v].variant = &variants[kind];
+        runs[v].threads = o->threads[v / METHODS];
+        runs[v].start = kind <= DAMPED && v < METHODS ? next[kind] : NULL;
+    }
+    for (int k = 0; k < o->frames; k++) {
+        // The published method first: its final residual is the mark for the others.
+        for (int v = count - 1; v >= 0; v--) {
+            const variant* kind = runs[v].variant;
+            bool unseen = kind->slow && (k >= o->slow_frames || v >= METHODS);
+            if (unseen || !is_listed(o->methods, kind->name)) {
+                continue;
+            }
+            RUGA_TRY_DONE(run_frame(&b, &runs[v], start[kind->motion == RUGA_SKIN_DAMPED], k, o));
+            b.marks[k] = kind == &variants[PAPER] ? runs[v].frames[k].report.residual_shell : b.marks[k];
+        }
+        for (int motion = 0; motion < 2; motion++) {
+            memcpy(start[motion], next[motion], (size_t)ruga_state_restart_size(b.model) * sizeof *rest);
+        }
+    }
+    report(&b, runs, count, o);
 done:
-    ruga_release(restart);
-    ruga_release(next);
-    ruga_release(watched);
-    ruga_state_destroy(&state);
-    ruga_model_destroy(&model);
-    ruga_mesh_clear(&mesh);
+    ruga_release(rest);
+    for (int motion = 0; motion < 2; motion++) {
+        ruga_release(start[motion]);
+        ruga_release(next[motion]);
+    }
+    destroy(&b);
     return status;
 }
 
-// bench [frames [json [unknowns ...]]]
+// ---- command line --------------------------------------------------------------------------------------
+
+static bool read_option(options* o, const char* name, const char* value) {
+    if (strcmp(name, "--frames") == 0) {
+        o->frames = atoi(value);
+        o->frames = o->frames < 1 ? 1 : o->frames > MAX_FRAMES ? MAX_FRAMES : o->frames;
+    } else if (strcmp(name, "--slow-frames") == 0) {
+        o->slow_frames = atoi(value);
+    } else if (strcmp(name, "--methods") == 0) {
+        o->methods = value;
+    } else if (strcmp(name, "--relaxation") == 0) {
+        o->relaxation = atof(value);
+    } else if (strcmp(name, "--threads") == 0) {
+        o->thread_count = sscanf(value, "%d,%d", &o->threads[0], &o->threads[1]);
+    } else if (strcmp(name, "--json") == 0) {
+        o->json = fopen(value, "w");
+        return o->json != NULL;
+    } else if (strcmp(name, "--residuals") == 0) {
+        o->residuals = fopen(value, "w");
+        return o->residuals && fputs("unknowns,method,threads,frame,iteration,seconds,residual,energy,"
+                                     "factorizations,energies\n",
+                                     o->residuals) >= 0;
+    } else {
+        return false;
+    }
+    return o->thread_count > 0 && o->relaxation > 0;
+}
+
+static bool read_arguments(int argc, char** argv, options* o) {
+    for (int k = 1; k < argc; k++) {
+        if (strcmp(argv[k], "--per-frame") == 0) {
+            o->per_frame = true;
+        } else if (strncmp(argv[k], "--", 2) == 0) {
+            if (k + 1 == argc || !read_option(o, argv[k], argv[k + 1])) {
+                return false;
+            }
+            k++;
+        } else if (o->case_count == MAX_CASES ||
+                   sscanf(argv[k], "%d:%d", &o->unknowns[o->case_count], &o->clusters[o->case_count]) < 1) {
+            return false;
+        } else {
+            o->case_count++;
+        }
+    }
+    return true;
+}
+
 int main(int argc, char** argv) {
-    static const int usual[] = {3138, 12534, 28194};
-    int frames = argc > 1 ? atoi(argv[1]) : 10, count = argc > 3 ? argc - 3 : 3;
-    frames = frames < 1 ? 1 : frames > MAX_FRAMES ? MAX_FRAMES : frames;
-    FILE* json = argc > 2 ? fopen(argv[2], "w") : NULL;
-    bool first = true;
+    static const int usual[][2] = {{3138, 0}, {12534, 0}, {28194, 0}, {28194, 2108}};
+    options o = {.frames = 20,
+                 .slow_frames = 1,
+                 .threads = {1},
+                 .thread_count = 1,
+                 .relaxation = 20e-3,
+                 .first_row = true};
+    if (!read_arguments(argc, argv, &o)) {
+        (void)fprintf(stderr, "bench: see the head of tests/bench/bench.c for the arguments\n");
+        return 2;
+    }
+    int count = o.case_count ? o.case_count : 4;
     for (int k = 0; k < count; k++) {
-        int unknowns = argc > 3 ? atoi(argv[3 + k]) : usual[k];
-        if (bench_case(unknowns, frames, 1, json, &first) != RUGA_OK) {
+        int unknowns = o.case_count ? o.unknowns[k] : usual[k][0],
+            clusters = o.case_count ? o.clusters[k] : usual[k][1];
+        if (bench_case(unknowns, clusters, &o) != RUGA_OK) {
             (void)fprintf(stderr, "%s\n", ruga_last_error());
             return 1;
         }
     }
-    if (json) {
-        fprintf(json, "\n]\n");
-        (void)fclose(json);
+    if (o.json) {
+        (void)fprintf(o.json, "\n]\n");
+        (void)fclose(o.json);
+    }
+    if (o.residuals) {
+        (void)fclose(o.residuals);
     }
     return 0;
 }
