@@ -36,7 +36,7 @@ static ruga_status lbfgs_direction(ruga_skin* skin, const memory* m, const doubl
             q[i] -= a[k] * y[i];
         }
     }
-    RUGA_TRY(ruga_skin_solve(skin, q, d));
+    RUGA_TRY(ruga_skin_solve_rough(skin, q, d));
     for (int i = 0; i < skin->n; i++) {
         d[i] *= m->gamma;
     }

@@ -546,6 +546,17 @@ ruga_status ruga_skin_solve(ruga_skin* skin, const double* r, double* d) {
     return RUGA_OK;
 }
 
+ruga_status ruga_skin_solve_rough(ruga_skin* skin, const double* r, double* d) {
+    RUGA_TRY(ruga_skin_project(skin, r, d));
+    double begin = ruga_clock();
+    memcpy(skin->right, d, (size_t)skin->n * sizeof *d);
+    memset(skin->right + skin->n, 0, (size_t)skin->m * sizeof *skin->right);
+    RUGA_TRY(ruga_factor_solve_rough(skin->factor, skin->right, skin->left));
+    skin->work.seconds_solve += ruga_clock() - begin;
+    skin->work.linear_iterations++;
+    return ruga_skin_project(skin, skin->left, d);
+}
+
 void ruga_skin_apply(const ruga_skin* skin, const double* v, double* y) {
     ruga_sparse k = *ruga_shell_pattern(skin->shell);
     k.value = skin->stiffness;
