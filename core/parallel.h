@@ -11,7 +11,8 @@
 int ruga_threads(void);
 
 // Calls body(begin, end, chunk, context) for consecutive ranges [begin, end) of at most `chunk_size` that
-// cover [0, count), from several threads. The body must write only to places of its own range or chunk.
+// cover [0, count), from several threads. The body must write only to places of its own range or chunk. A
+// call from inside a chunk, or while another thread of the program is in one, does its work alone.
 typedef void ruga_parallel_body(int begin, int end, int chunk, void* context);
 void ruga_parallel_for(int count, int chunk_size, ruga_parallel_body* body, void* context);
 

@@ -79,7 +79,7 @@ typedef struct figures {
     ruga_factor_info info;
 } figures;
 
-// One right-hand side with no load on the multipliers.
+// One right-hand side, the forces of random displacements: none on the multipliers.
 typedef ruga_status solver(ruga_factor* factor, const double* b, double* x);
 static ruga_status solve_once(ruga_factor* f, solver* solve, const matrix* a, double* b, double* x,
                               double* residual) {
@@ -87,7 +87,11 @@ static ruga_status solve_once(ruga_factor* f, solver* solve, const matrix* a, do
     int n = a->lower->columns;
     double sum = 0, size = 0;
     for (int i = 0; i < n; i++) {
-        b[i] = i < n - a->multipliers ? 2 * ruga_random_uniform(&random) - 1 : 0;
+        x[i] = 2 * ruga_random_uniform(&random) - 1;
+    }
+    ruga_sparse_multiply_symmetric(a->lower, x, b);
+    for (int i = n - a->multipliers; i < n; i++) {
+        b[i] = 0;
     }
     RUGA_TRY(solve(f, b, x));
     ruga_sparse_multiply_symmetric(a->lower, x, x + n);
