@@ -14,10 +14,10 @@
 #include "core/memory.h"
 #include "core/progress.h"
 #include "core/vec3.h"
-#include "mesh/make.h"
 #include "ruga/ruga.h"
 #include "solver/model.h"
 #include "solver/state.h"
+#include "tests/bench/pillow.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -80,34 +80,9 @@ typedef struct bench {
 
 // ---- the scene -----------------------------------------------------------------------------------------
 
-static ruga_status make_pillow(int unknowns, ruga_mesh* mesh) {
-    double low = 1e-3, high = 0.2;
-    for (int k = 0; k < 24; k++) {
-        double edge = sqrt(low * high);
-        ruga_make_def make = {.shape = RUGA_SHAPE_PILLOW, .size = {0.5, 0.5, 0.16}, .edge = edge};
-        ruga_mesh_clear(mesh);
-        RUGA_TRY(ruga_mesh_make(&make, mesh));
-        if (3 * mesh->vertex_count > unknowns) {
-            low = edge;
-        } else {
-            high = edge;
-        }
-        if (abs(3 * mesh->vertex_count - unknowns) < unknowns / 50) {
-            break;
-        }
-    }
-    return RUGA_OK;
-}
-
 static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def keys[3], const options* o) {
     int frames = o->frames;
-    def->mesh = ruga_mesh_as_def(mesh);
-    def->skin.thickness = 0.7e-3;
-    def->skin.young = 500e6;
-    def->interior.young = 50e3;
-    def->interior.motion = RUGA_INTERIOR_PRESCRIBED;
-    def->lattice.cells = 5;
-    def->solver.allow_coarse = true;
+    bench_pillow_def(mesh, def);
     def->skin.relaxation = o->relaxation;
     for (int k = 0; k < 3; k++) {
         keys[k] = ruga_default_keyframe_def();
@@ -153,18 +128,6 @@ static void reset_peak(void) {
 
 // ---- one frame -----------------------------------------------------------------------------------------
 
-static int compare(const void* a, const void* b) {
-    double x = *(const double*)a, y = *(const double*)b;
-    return (x > y) - (x < y);
-}
-
-static double median(const double* values, int count) {
-    double sorted[MAX_FRAMES];
-    memcpy(sorted, values, (size_t)count * sizeof *sorted);
-    qsort(sorted, (size_t)count, sizeof *sorted, compare);
-    return count ? 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]) : 0;
-}
-
 // Seconds of one numeric factorisation of the matrix at x, its assembly not counted.
 static ruga_status time_unit(ruga_state* state, double* unit) {
     double seconds[TIMINGS];
@@ -173,7 +136,7 @@ static ruga_status time_unit(ruga_state* state, double* unit) {
         RUGA_TRY(k == 0 ? ruga_skin_factor(state->skin, state->x, 0, 0) : ruga_skin_refactor(state->skin, 0));
         seconds[k] = state->skin->work.seconds_factor - before;
     }
-    *unit = median(seconds, TIMINGS);
+    *unit = bench_median(TIMINGS, seconds);
     return RUGA_OK;
 }
 
@@ -270,7 +233,7 @@ static double column(const run* r, double (*value)(const frame*), bool worst) {
         values[k] = value(&r->frames[k]);
         most = fmax(most, values[k]);
     }
-    return worst ? most : median(values, r->count);
+    return worst ? most : bench_median(r->count, values);
 }
 
 static double seconds_of(const frame* f) {
@@ -431,7 +394,7 @@ static bool is_listed(const char* list, const char* name) {
 static ruga_status create(bench* b, int unknowns, int clusters, const options* o) {
     ruga_model_def def = ruga_default_model_def();
     ruga_keyframe_def keys[3];
-    RUGA_TRY(make_pillow(unknowns, &b->mesh));
+    RUGA_TRY(bench_pillow_mesh(unknowns, &b->mesh));
     fill(&def, &b->mesh, keys, o);
     def.coupling.count = clusters;
     reset_peak();

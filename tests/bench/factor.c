@@ -10,10 +10,10 @@
 #include "core/progress.h"
 #include "core/random.h"
 #include "core/vec3.h"
-#include "mesh/make.h"
 #include "ruga/ruga.h"
 #include "solver/model.h"
 #include "solver/state.h"
+#include "tests/bench/pillow.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,47 +23,12 @@
 
 enum { MAX_REPEATS = 25, SOLVES = 5 };
 
-static ruga_status make_pillow(int unknowns, ruga_mesh* mesh) {
-    double low = 5e-4, high = 0.2;
-    for (int k = 0; k < 24; k++) {
-        double edge = sqrt(low * high);
-        ruga_make_def make = {.shape = RUGA_SHAPE_PILLOW, .size = {0.5, 0.5, 0.16}, .edge = edge};
-        ruga_mesh_clear(mesh);
-        RUGA_TRY(ruga_mesh_make(&make, mesh));
-        if (3 * mesh->vertex_count > unknowns) {
-            low = edge;
-        } else {
-            high = edge;
-        }
-        if (abs(3 * mesh->vertex_count - unknowns) < unknowns / 50) {
-            break;
-        }
-    }
-    return RUGA_OK;
-}
-
 static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def* key) {
-    def->mesh = ruga_mesh_as_def(mesh);
-    def->skin.thickness = 0.7e-3;
-    def->skin.young = 500e6;
-    def->interior.young = 50e3;
-    def->interior.motion = RUGA_INTERIOR_PRESCRIBED;
-    def->lattice.cells = 5;
-    def->solver.allow_coarse = true;
+    bench_pillow_def(mesh, def);
     *key = ruga_default_keyframe_def();
     def->keyframes = key;
     def->keyframe_count = 1;
     def->frames = 1;
-}
-
-static int compare(const void* a, const void* b) {
-    double x = *(const double*)a, y = *(const double*)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double* values, int count) {
-    qsort(values, (size_t)count, sizeof *values, compare);
-    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
 typedef struct matrix {
@@ -140,9 +105,9 @@ static ruga_status measure(ruga_factor_kind kind, const matrix* a, int repeats, 
                 roughs[k * SOLVES + s] = seconds(threads) - begin;
             }
         }
-        f->factor[threads - 1] = median(factors, repeats);
-        f->solve[threads - 1] = median(solves, repeats * SOLVES);
-        f->rough[threads - 1] = median(roughs, repeats * SOLVES);
+        f->factor[threads - 1] = bench_median(repeats, factors);
+        f->solve[threads - 1] = bench_median(repeats * SOLVES, solves);
+        f->rough[threads - 1] = bench_median(repeats * SOLVES, roughs);
     }
     f->bytes = (double)ruga_factor_bytes(factor);
 done:
@@ -201,7 +166,7 @@ static ruga_status bench_size(int unknowns, int repeats) {
     ruga_model_def def = ruga_default_model_def();
     ruga_keyframe_def key;
     figures cholesky = {0}, ldl = {0}, exact = {0}, unclustered = {0};
-    RUGA_TRY_DONE(make_pillow(unknowns, &mesh));
+    RUGA_TRY_DONE(bench_pillow_mesh(unknowns, &mesh));
     fill(&def, &mesh, &key);
     RUGA_TRY_DONE(ruga_model_create(&def, &model));
     RUGA_TRY_DONE(ruga_state_create(model, &state));

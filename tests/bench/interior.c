@@ -10,22 +10,13 @@
 #include "mesh/make.h"
 #include "solver/model.h"
 #include "solver/state.h"
+#include "tests/bench/pillow.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MOST = 200, UNITS = 5 };
-
-static int compare(const void* a, const void* b) {
-    double x = *(const double*)a, y = *(const double*)b;
-    return (x > y) - (x < y);
-}
-
-static double median(int count, double* values) {
-    qsort(values, (size_t)count, sizeof *values, compare);
-    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
-}
 
 static void fill(ruga_model_def* def, const ruga_mesh* mesh, int cells, ruga_handle_def* handle) {
     def->mesh = ruga_mesh_as_def(mesh);
@@ -62,8 +53,8 @@ static ruga_status time_unit(ruga_state* state, double* assembly, double* factor
         RUGA_TRY(ruga_factor_numeric(in->factor, in->kkt.value, &info));
         f[k] = ruga_clock() - begin;
     }
-    *assembly = median(UNITS, a);
-    *factor = median(UNITS, f);
+    *assembly = bench_median(UNITS, a);
+    *factor = bench_median(UNITS, f);
     return RUGA_OK;
 }
 
@@ -91,7 +82,7 @@ static ruga_status run(const double size[3], double edge, int cells, int steps) 
         minima += report.outcome == RUGA_OUTCOME_MINIMUM;
     }
     RUGA_TRY_DONE(time_unit(state, &assembly, &factor));
-    double middle = median(steps, seconds), unit = assembly + factor;
+    double middle = bench_median(steps, seconds), unit = assembly + factor;
     printf("%d elements, %d unknowns, %d vertices: median %.4f s a step, worst %.4f s; assembly %.4f s, "
            "factor %.4f s; "
            "per step %.1f Newton, %.1f products, %.1f factorisations; %.2f units a step, %.2f a Newton "
