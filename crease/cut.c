@@ -539,3 +539,13 @@ double ruga_cut_gap(const ruga_cut* cut, const double* x) {
     }
     return gap;
 }
+
+void ruga_cut_masses(const ruga_cut* cut, const double* triangle_mass, double least, double* mass) {
+    memset(mass, 0, (size_t)cut->node_count * sizeof *mass);
+    for (int p = 0; p < cut->piece_count; p++) {
+        const ruga_piece* piece = &cut->piece[p];
+        for (int i = 0; i < 3; i++) {
+            mass[piece->node[i]] += fmax(piece->fraction, least) * triangle_mass[piece->triangle] / 3;
+        }
+    }
+}

@@ -78,6 +78,9 @@ void ruga_raster_places(const ruga_raster* raster, int triangle, double position
 void ruga_cut_rest(const ruga_raster* raster, const ruga_cut* cut, double* x);
 // Positions of the material's vertices from those of the nodes; an embedded node is the mean of its copies.
 void ruga_cut_material(const ruga_cut* cut, const double* x, double* material);
+// mass [nodes], kg, from those of the raster's triangles: each piece's part goes to its nodes. Fractions
+// count at least `least` (0 = as they are).
+void ruga_cut_masses(const ruga_cut* cut, const double* triangle_mass, double least, double* mass);
 // Largest distance, m, between copies of one embedded node.
 double ruga_cut_gap(const ruga_cut* cut, const double* x);
 
