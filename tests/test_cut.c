@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
 #include "tests/crease_case.h"
-#include "tests/scarce_memory.h"
 
 // As in the paper: the mesh is left as it is.
 static ruga_raster_def plain_raster(void) {
@@ -289,6 +288,109 @@ static void a_closed_curve_can_fold(void** state) {
     }
 }
 
+// ------------------------------------------------------------------------------- open cuts
+
+static void an_open_cut_separates_and_a_slit_opens(void** state) {
+    (void)state;
+    const double across[2][3] = {{-1, 2.3, 0}, {9, 3.4, 0}}, slit[2][3] = {{2.2, 2.4, 0}, {5.8, 3.3, 0}};
+    for (int k = 0; k < 2; k++) {
+        crease_case c = {0};
+        const ruga_raster_def def = ruga_default_raster_def();
+        const ruga_curve style = {.kind = RUGA_CREASE_CUT};
+        ruga_connectivity material;
+        make_squares(8, 6, true, &c.mesh);
+        assert_ok(ruga_curves_add_polyline(&c.curves, &style, 2, k ? slit : across));
+        run_case(&c, &def);
+        assert_int_equal(all_rows(&c), 0);
+        assert_int_equal(c.cut.segment_count, 0);
+        assert_ok(ruga_connectivity_create(&c.cut.material, &material));
+        assert_int_equal(material.component_count, k ? 1 : 2);
+        // The slit adds a boundary, so that the sheet becomes a ring; cut across it is two discs.
+        assert_int_equal(c.cut.material.vertex_count - material.edge_count + c.cut.material.triangle_count,
+                         k ? 0 : 2);
+        assert_near(ruga_mesh_area(&c.cut.material), 48, 1e-12);
+        ruga_connectivity_clear(&material);
+        clear_case(&c);
+    }
+}
+
+static void a_crease_across_an_open_cut_ends_on_both_its_sides(void** state) {
+    (void)state;
+    crease_case c = {0};
+    const ruga_raster_def def = ruga_default_raster_def();
+    const ruga_curve open = {.kind = RUGA_CREASE_CUT};
+    ruga_connectivity material;
+    make_squares(8, 6, true, &c.mesh);
+    assert_ok(ruga_curves_add_polyline(&c.curves, &open, 2, (const double[2][3]){{-1, 2.6, 0}, {9, 2.7, 0}}));
+    add_line(&c.curves, RUGA_FREEDOM_FULL, 3.4, -1, 4.6, 7);
+    run_case(&c, &def);
+    assert_ok(ruga_connectivity_create(&c.cut.material, &material));
+    assert_int_equal(material.component_count, 2);
+    assert_int_equal(c.cut.real_count > c.raster.mesh.vertex_count, 1); // the vertex at the crossing, twice
+    assert_int_equal(c.sewing.redundant_rows, 0);
+    assert_definite(&c, 1e7);
+    ruga_connectivity_clear(&material);
+    clear_case(&c);
+}
+
+static void open_mesh_edges_part_their_vertices(void** state) {
+    (void)state;
+    crease_case c = {0};
+    const ruga_raster_def def = ruga_default_raster_def();
+    const ruga_curve open = {.kind = RUGA_CREASE_CUT};
+    ruga_connectivity edges;
+    int path[9];
+    make_squares(8, 6, true, &c.mesh);
+    for (int i = 0; i < 9; i++) {
+        path[i] = 9 * 3 + i;
+    }
+    assert_ok(ruga_connectivity_create(&c.mesh, &edges));
+    assert_ok(ruga_curves_add_path(&c.curves, &open, &c.mesh, &edges, 9, path));
+    run_case(&c, &def);
+    assert_int_equal(c.cut.real_count, 63 + 9);
+    assert_int_equal(c.cut.node_count, 63 + 9);
+    ruga_connectivity_clear(&edges);
+    clear_case(&c);
+}
+
+static void copies_of_a_vertex_are_listed_and_masses_add_up(void** state) {
+    (void)state;
+    crease_case c = {0};
+    const ruga_raster_def def = ruga_default_raster_def();
+    make_squares(8, 6, true, &c.mesh);
+    add_line(&c.curves, RUGA_FREEDOM_FULL, -1, 2.6, 9, 2.7);
+    run_case(&c, &def);
+    double *mass = malloc((size_t)c.cut.node_count * sizeof *mass), sum = 0;
+    double* triangle = malloc((size_t)c.raster.mesh.triangle_count * sizeof *triangle);
+    for (int f = 0; f < c.raster.mesh.triangle_count; f++) {
+        triangle[f] = 0.5;
+    }
+    ruga_cut_masses(&c.cut, triangle, 0, mass);
+    for (int n = 0; n < c.cut.node_count; n++) {
+        bool listed = false;
+        for (int k = c.cut.copy_start[c.cut.source[n]]; k < c.cut.copy_start[c.cut.source[n] + 1]; k++) {
+            listed = listed || c.cut.copy[k] == n;
+        }
+        assert_true(listed && mass[n] > 0);
+        sum += mass[n];
+    }
+    assert_near(sum, 48, 1e-12);
+    // All copies of a vertex held: rows between them are none.
+    bool* fixed = malloc((size_t)c.cut.node_count * sizeof *fixed);
+    for (int n = 0; n < c.cut.node_count; n++) {
+        fixed[n] = c.raster.mesh.position[3 * c.cut.source[n]] < 0.5;
+    }
+    int before = c.sewing.row_count;
+    ruga_sewing_clear(&c.sewing);
+    assert_ok(ruga_sewing_create(&c.cut, fixed, &c.sewing));
+    assert_int_equal(c.sewing.fixed_rows, 1);
+    assert_int_equal(c.sewing.row_count, before - 1);
+    free(mass);
+    free(triangle);
+    free(fixed);
+    clear_case(&c);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_diagonal_cut_brings_the_known_numbers),
@@ -303,6 +405,10 @@ int main(void) {
         cmocka_unit_test(a_crossing_at_a_vertex_and_one_on_an_edge_have_the_known_rows),
         cmocka_unit_test(a_crossing_within_a_triangle_is_refused_with_its_place_or_mended),
         cmocka_unit_test(a_closed_curve_can_fold),
+        cmocka_unit_test(an_open_cut_separates_and_a_slit_opens),
+        cmocka_unit_test(a_crease_across_an_open_cut_ends_on_both_its_sides),
+        cmocka_unit_test(open_mesh_edges_part_their_vertices),
+        cmocka_unit_test(copies_of_a_vertex_are_listed_and_masses_add_up),
     };
     return cmocka_run_group_tests_name("cut", tests, NULL, check_no_leak);
 }

@@ -409,6 +409,126 @@ static void miura_on_kinked_creases_does_not_close(void** state) {
     clear_case(&c);
 }
 
+// ------------------------------------------------------------------------------- locks
+
+// Lower triangular factor of S for unit masses, in place.
+static double* factor_rows(const crease_case* c) {
+    int n = c->sewing.row_count;
+    double* one = malloc((size_t)c->cut.node_count * sizeof *one);
+    double* value = malloc((size_t)(c->sewing.pattern.start[n] + 1) * sizeof *value);
+    double* a = malloc((size_t)(n * n + 1) * sizeof *a);
+    for (int k = 0; k < c->cut.node_count; k++) {
+        one[k] = 1;
+    }
+    ruga_sewing_matrix(&c->sewing, one, value);
+    dense_from_lower(&c->sewing.pattern, value, a);
+    for (int j = 0; j < n; j++) {
+        for (int k = 0; k < j; k++) {
+            for (int i = j; i < n && a[j * n + k] != 0; i++) {
+                a[i * n + j] -= a[i * n + k] * a[j * n + k];
+            }
+        }
+        assert_true(a[j * n + j] > 0);
+        double pivot = sqrt(a[j * n + j]);
+        for (int i = j; i < n; i++) {
+            a[i * n + j] /= pivot;
+        }
+    }
+    free(one);
+    free(value);
+    return a;
+}
+
+static void solve_rows(int n, const double* l, double* b) {
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < i; k++) {
+            b[i] -= l[i * n + k] * b[k];
+        }
+        b[i] /= l[i * n + i];
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        for (int k = i + 1; k < n; k++) {
+            b[i] -= l[k * n + i] * b[k];
+        }
+        b[i] /= l[i * n + i];
+    }
+}
+
+// Part of an angle's gradient that is left once all motions that tear the seams are taken out: 0 = locked.
+static double freedom_to_turn(const crease_case* c, const ruga_hinge* hinge, const double* l,
+                              const double* x) {
+    int rows = c->sewing.row_count, nodes = c->cut.node_count;
+    double* g = calloc((size_t)nodes * 3, sizeof *g);
+    double *gap = malloc((size_t)(rows * 3 + 1) * sizeof *gap),
+           *one = malloc((size_t)(rows + 1) * sizeof *one);
+    double own[6][3], before = 0, after = 0;
+    ruga_hinge_measure(hinge, x, NULL, own);
+    for (int a = 0; a < 6; a++) {
+        ruga_add_scaled(1, own[a], g + 3 * hinge->node[a]);
+    }
+    ruga_sewing_gaps(&c->sewing, g, gap);
+    for (int i = 0; i < 3; i++) {
+        for (int r = 0; r < rows; r++) {
+            one[r] = gap[3 * r + i];
+        }
+        solve_rows(rows, l, one);
+        for (int r = 0; r < rows; r++) {
+            gap[3 * r + i] = one[r];
+        }
+    }
+    for (int k = 0; k < 3 * nodes; k++) {
+        before += g[k] * g[k];
+    }
+    ruga_sewing_spread(&c->sewing, NULL, -1, gap, g);
+    for (int k = 0; k < 3 * nodes; k++) {
+        after += g[k] * g[k];
+    }
+    free(g);
+    free(gap);
+    free(one);
+    return sqrt(after / before);
+}
+
+static void no_crease_of_random_curves_is_locked(void** state) {
+    (void)state;
+    double least = 1;
+    int segments = 0, refused = 0;
+    for (int k = 0; k < 1000; k++) {
+        ruga_random random = {1000 + (uint64_t)k};
+        crease_case c = {0};
+        double size[2];
+        random_mesh(&random, size, &c.mesh);
+        random_curves(&random, size, &c.curves);
+        const ruga_raster_def def = ruga_default_raster_def();
+        if (ruga_raster_create(&c.mesh, &c.curves, &def, &c.raster) == RUGA_OK) {
+            assert_ok(ruga_cut_create(&c.raster, &c.cut));
+            assert_ok(ruga_sewing_create(&c.cut, NULL, &c.sewing));
+            double *x = malloc((size_t)c.cut.node_count * 3 * sizeof *x), *l = factor_rows(&c);
+            ruga_hinge* hinge = malloc((size_t)(c.cut.segment_count + 1) * sizeof *hinge);
+            ruga_hinges_make(&c.raster, &c.cut, hinge);
+            ruga_cut_rest(&c.raster, &c.cut, x);
+            for (int s = 0; s < c.cut.segment_count; s++) {
+                if (hinge[s].curve >= 0) {
+                    double left = freedom_to_turn(&c, &hinge[s], l, x);
+                    if (left < 1e-6) {
+                        print_message("set %d, curve %d: %g\n", k, hinge[s].curve, left);
+                    }
+                    least = fmin(least, left);
+                    segments++;
+                }
+            }
+            free(x);
+            free(l);
+            free(hinge);
+        } else {
+            refused++;
+        }
+        clear_case(&c);
+    }
+    print_message("%d segments, %d sets refused, least freedom %g\n", segments, refused, least);
+    assert_true(least > 1e-6);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_straight_cut_folds_rigidly_without_gap_or_energy),
@@ -420,6 +540,7 @@ int main(void) {
         cmocka_unit_test(gauss_newton_is_semi_definite_and_rigid_motion_changes_nothing),
         cmocka_unit_test(miura_folds_rigidly_on_meshes_that_know_nothing_of_it),
         cmocka_unit_test(miura_on_kinked_creases_does_not_close),
+        cmocka_unit_test(no_crease_of_random_curves_is_locked),
     };
     return cmocka_run_group_tests_name("hinge", tests, NULL, check_no_leak);
 }
