@@ -72,11 +72,12 @@ void ruga_raster_places(const ruga_raster* r, int triangle, double position[RUGA
     }
 }
 
-int ruga_piece_vertex(const ruga_cut* cut, const ruga_piece* piece, int place) {
+int ruga_cut_vertex(const ruga_cut* cut, const ruga_cut_piece* piece, int place) {
     return place % 2 ? cut->real_count + piece->bound[place / 2] : piece->node[place / 2];
 }
 
-int ruga_piece_point(const ruga_cut* cut, const ruga_piece* piece, int place, int node[2], double weight[2]) {
+int ruga_cut_point(const ruga_cut* cut, const ruga_cut_piece* piece, int place, int node[2],
+                   double weight[2]) {
     int i = place / 2, j = (i + 1) % 3;
     node[0] = piece->node[i];
     weight[0] = 1;
@@ -141,9 +142,9 @@ static ruga_status make_pieces(cutter* c) {
         for (int k = 0; k < c->split[f].piece_count; k++) {
             int p = c->piece_start[f] + k;
             cut->piece[p] =
-                (ruga_piece){.triangle = f, .bound = {-1, -1, -1}, .polygon = c->split[f].piece[k]};
+                (ruga_cut_piece){.triangle = f, .bound = {-1, -1, -1}, .polygon = c->split[f].piece[k]};
             cut->piece[p].fraction =
-                c->split[f].piece_count == 1 ? 1 : ruga_polygon_fraction(&c->split[f].piece[k], node);
+                c->split[f].piece_count == 1 ? 1 : ruga_outline_fraction(&c->split[f].piece[k], node);
             for (int i = 0; i < 3; i++) {
                 c->copies.vertex[3 * p + i] = r->mesh.triangle[3 * (size_t)f + (size_t)i];
                 c->copies.material[3 * p + i] = ruga_split_reaches(&c->split[f], k, 2 * i);
@@ -332,7 +333,7 @@ static void walk_around(const cutter* c, int f, int i, ring* r) {
         if (!first && !chord_stays_open(c, f, from, at)) {
             join(r, n - 1, n);
         }
-        const ruga_polygon* polygon = &c->cut->piece[p].polygon;
+        const ruga_outline* polygon = &c->cut->piece[p].polygon;
         for (int k = 0; k < polygon->count; k++) {
             if (polygon->place[k] == at) {
                 from = polygon->place[(k + 1) % polygon->count];
@@ -366,7 +367,7 @@ static ruga_status add_bounds(cutter* c, int e, const ring* r) {
             if (r->root[k] != root) {
                 continue;
             }
-            ruga_piece* piece = &c->cut->piece[r->piece[k]];
+            ruga_cut_piece* piece = &c->cut->piece[r->piece[k]];
             int i = r->inner[k], a = corner_at(c->raster, piece->triangle, ends[0]);
             int b = corner_at(c->raster, piece->triangle, ends[1]);
             piece->bound[i] = c->cut->bound_count;
@@ -408,10 +409,10 @@ static ruga_status find_bounds(cutter* c) {
 static ruga_status add_segment(cutter* c, ruga_segment segment) {
     ruga_cut* cut = c->cut;
     double x[2][3], position[RUGA_BORDER_PLACES][3];
-    const ruga_piece* left = &cut->piece[segment.piece[0]];
+    const ruga_cut_piece* left = &cut->piece[segment.piece[0]];
     ruga_raster_places(c->raster, left->triangle, position);
     for (int end = 0; end < 2; end++) {
-        segment.end[end] = ruga_piece_vertex(cut, left, segment.place[0][end]);
+        segment.end[end] = ruga_cut_vertex(cut, left, segment.place[0][end]);
         memcpy(x[end], position[segment.place[0][end]], sizeof x[end]);
     }
     segment.length = ruga_distance(x[0], x[1]);
@@ -543,7 +544,7 @@ double ruga_cut_gap(const ruga_cut* cut, const double* x) {
 void ruga_cut_masses(const ruga_cut* cut, const double* triangle_mass, double least, double* mass) {
     memset(mass, 0, (size_t)cut->node_count * sizeof *mass);
     for (int p = 0; p < cut->piece_count; p++) {
-        const ruga_piece* piece = &cut->piece[p];
+        const ruga_cut_piece* piece = &cut->piece[p];
         for (int i = 0; i < 3; i++) {
             mass[piece->node[i]] += fmax(piece->fraction, least) * triangle_mass[piece->triangle] / 3;
         }

@@ -12,13 +12,13 @@
 #include "crease/raster.h"
 
 // One copy of a triangle, for one piece of it.
-typedef struct ruga_piece {
+typedef struct ruga_cut_piece {
     int triangle; // of the raster's mesh
     int node[3];
     int bound[3];    // of the embedded node at place 2 i + 1, -1 = none
     double fraction; // of the triangle's area that is this piece's material: for membrane and mass
-    ruga_polygon polygon;
-} ruga_piece;
+    ruga_outline polygon;
+} ruga_cut_piece;
 
 // Part of a mesh edge across which two pieces are one material: for bending.
 typedef struct ruga_bend {
@@ -51,7 +51,7 @@ typedef struct ruga_cut {
     int* copy_start;            // [V + 1] copies of a mesh vertex: what is clamped there is all of these
     int* copy;
     int piece_count;
-    ruga_piece* piece; // by triangle
+    ruga_cut_piece* piece; // by triangle
     int bend_count;
     ruga_bend* bend;
     int segment_count;
@@ -67,9 +67,10 @@ typedef struct ruga_cut {
 ruga_status ruga_cut_create(const ruga_raster* raster, ruga_cut* cut);
 void ruga_cut_clear(ruga_cut* cut);
 // The nodes and weights of a piece's place; an inner place of an edge has two.
-int ruga_piece_point(const ruga_cut* cut, const ruga_piece* piece, int place, int node[2], double weight[2]);
+int ruga_cut_point(const ruga_cut* cut, const ruga_cut_piece* piece, int place, int node[2],
+                   double weight[2]);
 // The material's vertex there.
-int ruga_piece_vertex(const ruga_cut* cut, const ruga_piece* piece, int place);
+int ruga_cut_vertex(const ruga_cut* cut, const ruga_cut_piece* piece, int place);
 // Places of embedded nodes on the edges of a raster's triangle, from corner i to i + 1; 0 = none.
 void ruga_raster_nodes(const ruga_raster* raster, int triangle, double node[3]);
 // Rest positions of all places of a triangle.

@@ -24,11 +24,11 @@
 
 // ------------------------------------------------------------------------------- from the cut
 
-static void add_point(const ruga_cut* cut, const ruga_piece* piece, int place, int first, double factor,
+static void add_point(const ruga_cut* cut, const ruga_cut_piece* piece, int place, int first, double factor,
                       double weight[RUGA_HINGE_NODES]) {
     int node[2];
     double part[2];
-    int count = ruga_piece_point(cut, piece, place, node, part);
+    int count = ruga_cut_point(cut, piece, place, node, part);
     for (int k = 0; k < count; k++) {
         for (int i = 0; i < 3; i++) {
             weight[first + i] += piece->node[i] == node[k] ? factor * part[k] : 0;
@@ -37,7 +37,7 @@ static void add_point(const ruga_cut* cut, const ruga_piece* piece, int place, i
 }
 
 // The corner of a piece's polygon that is farthest from the line between two places.
-static int farthest_place(const ruga_raster* raster, const ruga_piece* piece, const int end[2]) {
+static int farthest_place(const ruga_raster* raster, const ruga_cut_piece* piece, const int end[2]) {
     double x[RUGA_BORDER_PLACES][3], farthest = -1;
     int best = 0;
     ruga_raster_places(raster, piece->triangle, x);
@@ -58,7 +58,7 @@ void ruga_hinges_make(const ruga_raster* raster, const ruga_cut* cut, ruga_hinge
         ruga_hinge* h = &hinge[s];
         *h = (ruga_hinge){.length = segment->length, .curve = segment->curve};
         for (int side = 0; side < 2; side++) {
-            const ruga_piece* piece = &cut->piece[segment->piece[side]];
+            const ruga_cut_piece* piece = &cut->piece[segment->piece[side]];
             const int* end = segment->place[side];
             memcpy(h->node + 3 * side, piece->node, sizeof piece->node);
             add_point(cut, piece, end[0], 3 * side, 0.5, h->weight[0]);

@@ -18,7 +18,7 @@ typedef struct maker {
 } maker;
 
 // Triangles of a piece's polygon, as places. Returns their number.
-static int triangulate(const ruga_raster* r, const ruga_piece* piece, ruga_split* split) {
+static int triangulate(const ruga_raster* r, const ruga_cut_piece* piece, ruga_split* split) {
     double position[RUGA_BORDER_PLACES][3];
     *split = (ruga_split){.piece_count = 1, .piece = {piece->polygon}};
     if (piece->polygon.count > 3) {
@@ -144,13 +144,13 @@ static void fill_triangles(const maker* m) {
     ruga_mesh* to = &m->cut->material;
     size_t out = 0;
     for (int p = 0; p < m->cut->piece_count; p++) {
-        const ruga_piece* piece = &m->cut->piece[p];
+        const ruga_cut_piece* piece = &m->cut->piece[p];
         ruga_split split;
         int count = triangulate(m->raster, piece, &split);
         for (int k = 0; k < count; k++, out++) {
             for (size_t i = 0; i < 3; i++) {
                 int place = split.piece[k].place[i];
-                to->triangle[3 * out + i] = ruga_piece_vertex(m->cut, piece, place);
+                to->triangle[3 * out + i] = ruga_cut_vertex(m->cut, piece, place);
                 if (to->uv_triangle) {
                     to->uv_triangle[3 * out + i] = uv_at(m, piece->triangle, place);
                 }

@@ -12,7 +12,7 @@
 
 void ruga_split_start(const double node[3], ruga_split* split) {
     *split = (ruga_split){.piece_count = 1};
-    ruga_polygon* whole = &split->piece[0];
+    ruga_outline* whole = &split->piece[0];
     for (int i = 0; i < 3; i++) {
         whole->place[whole->count++] = 2 * i;
         if (node[i] > 0) {
@@ -21,7 +21,7 @@ void ruga_split_start(const double node[3], ruga_split* split) {
     }
 }
 
-static int find_place(const ruga_polygon* p, int place) {
+static int find_place(const ruga_outline* p, int place) {
     for (int i = 0; i < p->count; i++) {
         if (p->place[i] == place) {
             return i;
@@ -43,8 +43,8 @@ static bool on_one_edge(int a, int b) {
 }
 
 // The polygon from position i on to position j.
-static ruga_polygon part_of(const ruga_polygon* p, int i, int j) {
-    ruga_polygon part = {0};
+static ruga_outline part_of(const ruga_outline* p, int i, int j) {
+    ruga_outline part = {0};
     for (int k = i;; k = (k + 1) % p->count) {
         part.place[part.count++] = p->place[k];
         if (k == j) {
@@ -58,7 +58,7 @@ bool ruga_split_add(ruga_split* split, int from, int to, int own) {
         return false;
     }
     for (int p = 0; p < split->piece_count; p++) {
-        ruga_polygon whole = split->piece[p];
+        ruga_outline whole = split->piece[p];
         int i = find_place(&whole, from), j = find_place(&whole, to);
         if (i < 0 || j < 0 || (i + 1) % whole.count == j || (j + 1) % whole.count == i) {
             continue;
@@ -82,7 +82,7 @@ static double angle_at(const double a[3], const double b[3], const double c[3]) 
 }
 
 // Smallest angle that the chord between positions i and j makes with the border beside it.
-static double chord_angle(const ruga_polygon* p, int i, int j, const double x[RUGA_BORDER_PLACES][3]) {
+static double chord_angle(const ruga_outline* p, int i, int j, const double x[RUGA_BORDER_PLACES][3]) {
     double least = RUGA_PI;
     for (int end = 0; end < 2; end++) {
         int at = end ? j : i, other = end ? i : j;
@@ -95,7 +95,7 @@ static double chord_angle(const ruga_polygon* p, int i, int j, const double x[RU
 }
 
 // The best chord of a polygon with more than three corners.
-static bool best_chord(const ruga_polygon* p, const double x[RUGA_BORDER_PLACES][3], int chord[2]) {
+static bool best_chord(const ruga_outline* p, const double x[RUGA_BORDER_PLACES][3], int chord[2]) {
     double widest = -1;
     for (int i = 0; i < p->count; i++) {
         for (int j = i + 2; j < p->count && j - i < p->count - 1; j++) {
@@ -143,7 +143,7 @@ void ruga_place_weights(const double node[3], int place, double weight[3]) {
 
 // Twice the signed area over twice the triangle's: the polygon's shoelace sum in the weights of corners 1
 // and 2.
-double ruga_polygon_fraction(const ruga_polygon* polygon, const double node[3]) {
+double ruga_outline_fraction(const ruga_outline* polygon, const double node[3]) {
     double sum = 0, a[3], b[3];
     for (int i = 0; i < polygon->count; i++) {
         ruga_place_weights(node, polygon->place[i], a);

@@ -10,14 +10,14 @@
 
 enum { RUGA_BORDER_PLACES = 6, RUGA_MOST_PIECES = 4, RUGA_MOST_CHORDS = 3 };
 
-typedef struct ruga_polygon {
+typedef struct ruga_outline {
     int count;
     int place[RUGA_BORDER_PLACES]; // counter-clockwise
-} ruga_polygon;
+} ruga_outline;
 
 typedef struct ruga_split {
     int piece_count;
-    ruga_polygon piece[RUGA_MOST_PIECES];
+    ruga_outline piece[RUGA_MOST_PIECES];
     int chord_count;
     int chord[RUGA_MOST_CHORDS][2]; // places
     int own[RUGA_MOST_CHORDS];      // index of the chord that was given, -1 = auxiliary
@@ -37,6 +37,6 @@ bool ruga_split_reaches(const ruga_split* split, int p, int place);
 // Weights [3] of a place in the triangle.
 void ruga_place_weights(const double node[3], int place, double weight[3]);
 // Part of the triangle's area that a polygon covers.
-double ruga_polygon_fraction(const ruga_polygon* polygon, const double node[3]);
+double ruga_outline_fraction(const ruga_outline* polygon, const double node[3]);
 
 #endif

@@ -33,8 +33,8 @@ ruga_status ruga_pairs_create(const ruga_cut* cut, int* count, ruga_pair** pair)
     int found = 0;
     RUGA_TRY(RUGA_NEW(list, 3 * (size_t)cut->segment_count));
     for (int s = 0; s < cut->segment_count; s++) {
-        const ruga_piece* side[2] = {&cut->piece[cut->segment[s].piece[0]],
-                                     &cut->piece[cut->segment[s].piece[1]]};
+        const ruga_cut_piece* side[2] = {&cut->piece[cut->segment[s].piece[0]],
+                                         &cut->piece[cut->segment[s].piece[1]]};
         // Chords have the same triangle on both sides; along mesh edges nothing is doubled.
         for (int i = 0; i < 3 && cut->segment[s].curve >= 0 && side[0]->triangle == side[1]->triangle; i++) {
             int a = side[0]->node[i], b = side[1]->node[i];

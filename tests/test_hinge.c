@@ -40,7 +40,7 @@ static void clear_strip(strip* s) {
 }
 
 // Mean of a piece's corners: it lies in the piece.
-static void middle_of(const crease_case* c, const ruga_piece* piece, double middle[3]) {
+static void middle_of(const crease_case* c, const ruga_cut_piece* piece, double middle[3]) {
     double x[RUGA_BORDER_PLACES][3];
     ruga_raster_places(&c->raster, piece->triangle, x);
     memset(middle, 0, 3 * sizeof *middle);
@@ -63,7 +63,7 @@ static void turn(const double at[3], const double axis[3], double angle, const d
 // Folds what lies on the left of the crease up by `angle`.
 static void fold_strip(strip* s, double angle) {
     for (int p = 0; p < s->c.cut.piece_count; p++) {
-        const ruga_piece* piece = &s->c.cut.piece[p];
+        const ruga_cut_piece* piece = &s->c.cut.piece[p];
         double middle[3], d[3], c[3];
         middle_of(&s->c, piece, middle);
         ruga_subtract(middle, s->at, d);
