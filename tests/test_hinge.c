@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
 #include "tests/crease_case.h"
+#include "tests/random_creases.h"
 
 #include "crease/hinge.h"
 #include "crease/springs.h"

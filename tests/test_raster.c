@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
 #include "tests/crease_case.h"
+#include "tests/random_creases.h"
 #include "tests/scarce_memory.h"
 
 static const ruga_curve PLAIN = {.freedom = RUGA_FREEDOM_AUTO};
