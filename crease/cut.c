@@ -143,8 +143,8 @@ static ruga_status make_pieces(cutter* c) {
             int p = c->piece_start[f] + k;
             cut->piece[p] =
                 (ruga_cut_piece){.triangle = f, .bound = {-1, -1, -1}, .polygon = c->split[f].piece[k]};
-            cut->piece[p].fraction =
-                c->split[f].piece_count == 1 ? 1 : ruga_outline_fraction(&c->split[f].piece[k], node);
+            double part = ruga_outline_fraction(&c->split[f].piece[k], node, cut->piece[p].middle);
+            cut->piece[p].fraction = c->split[f].piece_count == 1 ? 1 : part;
             for (int i = 0; i < 3; i++) {
                 c->copies.vertex[3 * p + i] = r->mesh.triangle[3 * (size_t)f + (size_t)i];
                 c->copies.material[3 * p + i] = ruga_split_reaches(&c->split[f], k, 2 * i);
@@ -541,12 +541,15 @@ double ruga_cut_gap(const ruga_cut* cut, const double* x) {
     return gap;
 }
 
-void ruga_cut_masses(const ruga_cut* cut, const double* triangle_mass, double least, double* mass) {
+void ruga_cut_masses(const ruga_cut* cut, const double* triangle_mass, double least, bool centred,
+                     double* mass) {
     memset(mass, 0, (size_t)cut->node_count * sizeof *mass);
     for (int p = 0; p < cut->piece_count; p++) {
         const ruga_cut_piece* piece = &cut->piece[p];
+        double more = fmax(least - piece->fraction, 0) / 3;
         for (int i = 0; i < 3; i++) {
-            mass[piece->node[i]] += fmax(piece->fraction, least) * triangle_mass[piece->triangle] / 3;
+            double share = centred ? piece->middle[i] : 1.0 / 3;
+            mass[piece->node[i]] += (piece->fraction * share + more) * triangle_mass[piece->triangle];
         }
     }
 }

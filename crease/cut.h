@@ -15,8 +15,9 @@
 typedef struct ruga_cut_piece {
     int triangle; // of the raster's mesh
     int node[3];
-    int bound[3];    // of the embedded node at place 2 i + 1, -1 = none
-    double fraction; // of the triangle's area that is this piece's material: for membrane and mass
+    int bound[3];     // of the embedded node at place 2 i + 1, -1 = none
+    double fraction;  // of the triangle's area that is this piece's material: for membrane and mass
+    double middle[3]; // weights of that material's middle
     ruga_outline polygon;
 } ruga_cut_piece;
 
@@ -79,9 +80,12 @@ void ruga_raster_places(const ruga_raster* raster, int triangle, double position
 void ruga_cut_rest(const ruga_raster* raster, const ruga_cut* cut, double* x);
 // Positions of the material's vertices from those of the nodes; an embedded node is the mean of its copies.
 void ruga_cut_material(const ruga_cut* cut, const double* x, double* material);
-// mass [nodes], kg, from those of the raster's triangles: each piece's part goes to its nodes. Fractions
-// count at least `least` (0 = as they are).
-void ruga_cut_masses(const ruga_cut* cut, const double* triangle_mass, double least, double* mass);
+// mass [nodes], kg, from those of the raster's triangles: each piece's part goes to its nodes. Where
+// `centred`, so that its centre of mass stays where it is: for weight in statics. Otherwise in equal thirds:
+// then stiffness over mass is that of a whole triangle, and a cut does not shorten the steps of explicit
+// dynamics. Fractions count at least `least` (0 = as they are).
+void ruga_cut_masses(const ruga_cut* cut, const double* triangle_mass, double least, bool centred,
+                     double* mass);
 // Largest distance, m, between copies of one embedded node.
 double ruga_cut_gap(const ruga_cut* cut, const double* x);
 

@@ -141,14 +141,21 @@ void ruga_place_weights(const double node[3], int place, double weight[3]) {
     weight[(i + 1) % 3] += t;
 }
 
-// Twice the signed area over twice the triangle's: the polygon's shoelace sum in the weights of corners 1
-// and 2.
-double ruga_outline_fraction(const ruga_outline* polygon, const double node[3]) {
-    double sum = 0, a[3], b[3];
-    for (int i = 0; i < polygon->count; i++) {
+// In the weights of corners 1 and 2 the triangle has the area 1/2: a fan from the first place.
+double ruga_outline_fraction(const ruga_outline* polygon, const double node[3], double middle[3]) {
+    double sum = 0, first[3], a[3], b[3], moment[3] = {0, 0, 0};
+    ruga_place_weights(node, polygon->place[0], first);
+    for (int i = 1; i + 1 < polygon->count; i++) {
         ruga_place_weights(node, polygon->place[i], a);
-        ruga_place_weights(node, polygon->place[(i + 1) % polygon->count], b);
-        sum += a[1] * b[2] - a[2] * b[1];
+        ruga_place_weights(node, polygon->place[i + 1], b);
+        double area = (a[1] - first[1]) * (b[2] - first[2]) - (a[2] - first[2]) * (b[1] - first[1]);
+        sum += area;
+        for (int k = 0; k < 3; k++) {
+            moment[k] += area * (first[k] + a[k] + b[k]) / 3;
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        middle[k] = moment[k] / sum;
     }
     return sum;
 }

@@ -36,7 +36,7 @@ int ruga_split_left_of(const ruga_split* split, int from, int to);
 bool ruga_split_reaches(const ruga_split* split, int p, int place);
 // Weights [3] of a place in the triangle.
 void ruga_place_weights(const double node[3], int place, double weight[3]);
-// Part of the triangle's area that a polygon covers.
-double ruga_outline_fraction(const ruga_outline* polygon, const double node[3]);
+// Part of the triangle's area that a polygon covers, and the weights of that part's middle in the triangle.
+double ruga_outline_fraction(const ruga_outline* polygon, const double node[3], double middle[3]);
 
 #endif

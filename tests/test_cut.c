@@ -365,7 +365,7 @@ static void copies_of_a_vertex_are_listed_and_masses_add_up(void** state) {
     for (int f = 0; f < c.raster.mesh.triangle_count; f++) {
         triangle[f] = 0.5;
     }
-    ruga_cut_masses(&c.cut, triangle, 0, mass);
+    ruga_cut_masses(&c.cut, triangle, 0, true, mass);
     for (int n = 0; n < c.cut.node_count; n++) {
         bool listed = false;
         for (int k = c.cut.copy_start[c.cut.source[n]]; k < c.cut.copy_start[c.cut.source[n] + 1]; k++) {
@@ -375,6 +375,20 @@ static void copies_of_a_vertex_are_listed_and_masses_add_up(void** state) {
         sum += mass[n];
     }
     assert_near(sum, 48, 1e-12);
+    double centre[2] = {0, 0};
+    for (int n = 0; n < c.cut.node_count; n++) {
+        for (int i = 0; i < 2; i++) {
+            centre[i] += mass[n] * c.raster.mesh.position[3 * c.cut.source[n] + i] / sum;
+        }
+    }
+    assert_near(centre[0], 4, 1e-12);
+    assert_near(centre[1], 3, 1e-12);
+    double least = INFINITY;
+    ruga_cut_masses(&c.cut, triangle, 0.02, false, mass);
+    for (int n = 0; n < c.cut.node_count; n++) {
+        least = fmin(least, mass[n]);
+    }
+    assert_true(least >= 0.02 * 0.5 / 3 * (1 - 1e-12));
     // All copies of a vertex held: rows between them are none.
     bool* fixed = malloc((size_t)c.cut.node_count * sizeof *fixed);
     for (int n = 0; n < c.cut.node_count; n++) {

@@ -43,7 +43,7 @@ static void make_cloth(bool cross, bool full, bool hold, cloth* k) {
     for (int f = 0; f < triangles; f++) {
         triangle[f] = 0.1;
     }
-    ruga_cut_masses(&k->c.cut, triangle, 0.02, k->mass);
+    ruga_cut_masses(&k->c.cut, triangle, 0.02, false, k->mass);
     ruga_cut_rest(&k->c.raster, &k->c.cut, k->x);
     for (int n = 0; n < nodes; n++) {
         fixed[n] = hold && k->x[3 * n] < 1e-9;
