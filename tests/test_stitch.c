@@ -395,6 +395,128 @@ static void a_crease_changes_no_stiffness_with_fractions_of_area(void** state) {
     }
 }
 
+// ------------------------------------------------------------------------------- steps
+
+// 2 / sqrt(the largest eigenvalue of P M^-1 K P), P the projection of stitch.c: the longest step of explicit
+// dynamics, with springs along all sides, as stiff as they are short, by power iteration.
+static double longest_step(const crease_case* c) {
+    int nodes = c->cut.node_count;
+    size_t size = (size_t)nodes * 3;
+    double *x = malloc(size * sizeof *x), *v = malloc(size * sizeof *v), *w = malloc(size * sizeof *w);
+    double *mass = malloc((size_t)nodes * sizeof *mass), *inverse = malloc((size_t)nodes * sizeof *inverse);
+    double(*block)[RUGA_TRIANGLE_BLOCKS][9] = malloc((size_t)c->cut.piece_count * sizeof *block);
+    double* triangle = malloc((size_t)c->raster.mesh.triangle_count * sizeof *triangle);
+    ruga_random random = {4};
+    ruga_stitch* stitch;
+    ruga_cut_rest(&c->raster, &c->cut, x);
+    for (int f = 0; f < c->raster.mesh.triangle_count; f++) {
+        const int* t = c->raster.mesh.triangle + 3 * f;
+        double n[3];
+        ruga_triangle_normal(c->raster.mesh.position + 3 * t[0], c->raster.mesh.position + 3 * t[1],
+                             c->raster.mesh.position + 3 * t[2], n);
+        triangle[f] = ruga_norm(n) / 2;
+    }
+    ruga_cut_masses(&c->cut, triangle, 0.02, false, mass);
+    for (int p = 0; p < c->cut.piece_count; p++) {
+        memset(block[p], 0, sizeof block[p]);
+        for (int b = 3; b < RUGA_TRIANGLE_BLOCKS; b++) { // one for each side
+            int i = ruga_triangle_block_corner[b][0], j = ruga_triangle_block_corner[b][1];
+            double d[3];
+            ruga_subtract(x + 3 * c->cut.piece[p].node[i], x + 3 * c->cut.piece[p].node[j], d);
+            double length = ruga_normalize(d);
+            for (int k = 0; k < 9; k++) {
+                double stiffness = d[k / 3] * d[k % 3] / length;
+                block[p][b][k] -= stiffness;
+                block[p][i][k] += stiffness;
+                block[p][j][k] += stiffness;
+            }
+        }
+    }
+    for (int n = 0; n < nodes; n++) {
+        inverse[n] = 1 / mass[n];
+    }
+    for (size_t i = 0; i < size; i++) {
+        v[i] = ruga_random_uniform(&random) - 0.5;
+    }
+    assert_ok(ruga_stitch_create(&c->sewing, inverse, &stitch));
+    double value = 0;
+    for (int step = 0; step < 3000; step++) {
+        double before = 0, after = 0;
+        assert_ok(ruga_stitch_after(stitch, v));
+        memset(w, 0, size * sizeof *w);
+        for (int p = 0; p < c->cut.piece_count; p++) {
+            const int* node = c->cut.piece[p].node;
+            for (int b = 0; b < RUGA_TRIANGLE_BLOCKS; b++) {
+                int i = node[ruga_triangle_block_corner[b][0]], j = node[ruga_triangle_block_corner[b][1]];
+                for (int k = 0; k < 9; k++) {
+                    double value_k = fmax(c->cut.piece[p].fraction, 0.02) * block[p][b][k];
+                    w[3 * i + k / 3] += value_k * v[3 * j + k % 3];
+                    w[3 * j + k % 3] += b >= 3 ? value_k * v[3 * i + k / 3] : 0;
+                }
+            }
+        }
+        for (size_t i = 0; i < size; i++) {
+            before += mass[i / 3] * v[i] * v[i];
+            w[i] *= inverse[i / 3];
+        }
+        assert_ok(ruga_stitch_after(stitch, w));
+        for (size_t i = 0; i < size; i++) {
+            after += mass[i / 3] * w[i] * v[i];
+        }
+        value = after / before;
+        for (size_t i = 0; i < size; i++) {
+            v[i] = w[i] / value;
+        }
+    }
+    ruga_stitch_destroy(&stitch);
+    free(x);
+    free(v);
+    free(w);
+    free(mass);
+    free(inverse);
+    free(block);
+    free(triangle);
+    return 2 / sqrt(value);
+}
+
+static void a_cut_does_not_shorten_the_step_as_a_conforming_mesh_does(void** state) {
+    (void)state;
+    const double offset[] = {0.5, 0.13, 0.05};
+    crease_case plain = {0};
+    ruga_raster_def def = ruga_default_raster_def();
+    def.reach = 0; // the cut stays where it is drawn
+    make_squares(12, 12, true, &plain.mesh);
+    run_case(&plain, &def);
+    double limit = longest_step(&plain);
+    clear_case(&plain);
+    for (int k = 0; k < 3; k++) {
+        double step[3];
+        for (int kind = 0; kind < 3; kind++) {
+            crease_case c = {0};
+            make_squares(12, 12, true, &c.mesh);
+            add_line(&c.curves, kind == 0 ? RUGA_FREEDOM_SINGLE : RUGA_FREEDOM_FULL, -1, 6 + offset[k], 13,
+                     6 + offset[k]);
+            run_case(&c, &def);
+            if (kind == 2) {
+                crease_case conforming = {0};
+                assert_ok(ruga_mesh_copy(&c.cut.material, &conforming.mesh));
+                run_case(&conforming, &def);
+                step[kind] = longest_step(&conforming);
+                clear_case(&conforming);
+            } else {
+                step[kind] = longest_step(&c);
+            }
+            clear_case(&c);
+        }
+        print_message(
+            "offset %.2f: step over that of the plain mesh: single %.3f, full %.3f, conforming mesh %.3f\n",
+            offset[k], step[0] / limit, step[1] / limit, step[2] / limit);
+        assert_true(step[0] > 0.95 * limit);
+        assert_true(step[1] > 0.8 * limit);
+        assert_true(offset[k] > 0.13 || step[2] < 0.2 * limit);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gaps_stay_at_round_off_with_pre_and_post),
@@ -404,6 +526,7 @@ int main(void) {
         cmocka_unit_test(the_skirts_seams_factorise_sparsely),
         cmocka_unit_test(every_failed_allocation_is_a_status),
         cmocka_unit_test(a_crease_changes_no_stiffness_with_fractions_of_area),
+        cmocka_unit_test(a_cut_does_not_shorten_the_step_as_a_conforming_mesh_does),
     };
     return cmocka_run_group_tests_name("stitch", tests, NULL, check_no_leak);
 }
