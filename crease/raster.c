@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// Rasterisation of curves to a mesh (Patkar, Jin and Fedkiw 2015, section 3): mend.c makes rounds until the
+// curves fit; here their hits become chords. An end inside the mesh is, with snap, a vertex. Without it the
+// part within the last triangle is dropped and, where the last hit is on an inner edge, the curve is led on
+// to the opposite vertex (figure 4): without that the two sides of the cut could not turn at all.
+#include "crease/raster.h"
+
+#include "core/memory.h"
+#include "core/vec3.h"
+#include "crease/mend.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double STRAIGHT = 1e-6; // edges: what is less off straight may be one hinge
+
+ruga_raster_def ruga_default_raster_def(void) {
+    return (ruga_raster_def){.snap = true,
+                             .extend = true,
+                             .corner = 20 * RUGA_PI / 180,
+                             .reach = 0.1,
+                             .merge = 0.02,
+                             .rounds = 200};
+}
+
+void ruga_raster_clear(ruga_raster* raster) {
+    ruga_mesh_clear(&raster->mesh);
+    ruga_connectivity_clear(&raster->edges);
+    ruga_release(raster->node);
+    ruga_release(raster->chord);
+    ruga_release(raster->chord_start);
+    ruga_release(raster->crease);
+    ruga_release(raster->crease_along);
+    ruga_release(raster->curve);
+    ruga_release(raster->facts);
+    *raster = (ruga_raster){0};
+}
+
+// ------------------------------------------------------------------------------- ends
+
+// The vertex opposite the edge of a hit, on the side that the link through `face` does not come from.
+static int vertex_beyond(const ruga_connectivity* c, const ruga_hit* h, int face) {
+    int side = c->edge_triangle[h->edge][0] == face ? 1 : 0;
+    return c->edge_triangle[h->edge][side] < 0 ? -1 : c->edge_opposite[h->edge][side];
+}
+
+static ruga_status extend_path(const ruga_sheet* sheet, ruga_path* path) {
+    ruga_hits* hits = &path->hits;
+    RUGA_TRY(RUGA_RESERVE(hits->hit, hits->capacity, (size_t)hits->count + 2));
+    for (int end = 0; end < 2 && hits->count > 0; end++) {
+        const ruga_station* station = &path->station[end == 0 ? 0 : path->count - 1];
+        ruga_hit* h = end == 0 ? hits->hit : &hits->hit[hits->count - 1];
+        if (station->place.vertex >= 0 || station->place.beyond || h->edge < 0) {
+            continue;
+        }
+        int inner = end == 1 ? (hits->count > 1 ? h->face : -1) : hits->count > 1 ? hits->hit[1].face : -1;
+        if (hits->count == 1) { // one hit only: both ends are beside it, the first one where it came from
+            const int* f = sheet->edges.edge_triangle[h->edge];
+            inner = end == 1 ? h->face : f[0] == h->face ? f[1] : f[0];
+        }
+        int v = vertex_beyond(&sheet->edges, h, inner);
+        if (v < 0) {
+            continue;
+        }
+        const int* f = sheet->edges.edge_triangle[h->edge];
+        int face = f[0] == inner ? f[1] : f[0];
+        ruga_hit tip = {.vertex = v, .edge = -1, .face = face, .stretch = h->stretch};
+        if (end == 0) {
+            memmove(hits->hit + 1, hits->hit, (size_t)hits->count * sizeof *hits->hit);
+            hits->hit[0] = tip;
+            hits->hit[0].face = -1;
+            hits->hit[1].face = face;
+        } else {
+            hits->hit[hits->count] = tip;
+        }
+        hits->count++;
+    }
+    return RUGA_OK;
+}
+
+// ------------------------------------------------------------------------------- chords
+
+// Place of a hit on the border of a triangle, as in ruga_chord; -1 = not there.
+static int local_place(const ruga_raster* r, int f, const ruga_hit* h) {
+    for (int i = 0; i < 3; i++) {
+        if (h->vertex >= 0 ? h->vertex == r->mesh.triangle[3 * (size_t)f + (size_t)i]
+                           : h->edge == r->edges.triangle_edge[f][i]) {
+            return 2 * i + (h->vertex < 0);
+        }
+    }
+    return -1;
+}
+
+typedef struct build {
+    ruga_raster* raster;
+    const ruga_sheet* sheet;
+    int capacity;
+    int* first_curve; // [V] path of the first link at a vertex, -1 = none
+    int* links;       // [V] number of links
+    int* node_links;  // [E] number of chords at an embedded node, on both sides
+    int* node_curve;  // [E]
+    int* head;        // [F] last chord of a triangle, -1 = none
+    int* next;        // [chords] the one before it
+    int next_capacity;
+} build;
+
+static void note_vertex(build* b, int v, int curve) {
+    ruga_raster* r = b->raster;
+    int first = b->first_curve[v];
+    if (first >= 0 && (first != curve || b->links[v] >= 2)) {
+        r->facts[first].meets = r->facts[curve].meets = true;
+    }
+    b->first_curve[v] = first < 0 ? curve : first;
+    b->links[v]++;
+}
+
+static void note_node(build* b, int e, int curve) {
+    ruga_raster* r = b->raster;
+    int first = b->node_curve[e];
+    if (first >= 0 && (first != curve || b->node_links[e] >= 2)) {
+        r->facts[first].meets = r->facts[curve].meets = true;
+    }
+    b->node_curve[e] = first < 0 ? curve : first;
+    b->node_links[e]++;
+}
+
+static void note_hit(build* b, const ruga_hit* h, int curve) {
+    if (h->vertex >= 0) {
+        note_vertex(b, h->vertex, curve);
+    } else {
+        note_node(b, h->edge, curve);
+        b->raster->node[h->edge] = h->place;
+    }
+}
+
+static bool is_new_chord(const build* b, int f, const int end[2]) {
+    for (int k = b->head[f]; k >= 0; k = b->next[k]) {
+        const int* other = b->raster->chord[k].end;
+        if ((other[0] == end[0] && other[1] == end[1]) || (other[0] == end[1] && other[1] == end[0])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static ruga_status add_chord(build* b, ruga_chord chord) {
+    ruga_raster* r = b->raster;
+    RUGA_TRY(RUGA_RESERVE(r->chord, b->capacity, (size_t)r->chord_count + 1));
+    RUGA_TRY(RUGA_RESERVE(b->next, b->next_capacity, (size_t)r->chord_count + 1));
+    b->next[r->chord_count] = b->head[chord.triangle];
+    b->head[chord.triangle] = r->chord_count;
+    r->chord[r->chord_count++] = chord;
+    return RUGA_OK;
+}
+
+// The link from the hit before h to h becomes a chord, or the crease of a mesh edge; a boundary edge is none,
+// and what lies on an earlier curve is left to it.
+static ruga_status add_link(build* b, const ruga_hit* h, int curve, const double along[2]) {
+    ruga_raster* r = b->raster;
+    const ruga_hit* g = h - 1;
+    if (h->face >= 0) {
+        int end[2] = {local_place(r, h->face, g), local_place(r, h->face, h)};
+        RUGA_ASSERT(end[0] >= 0 && end[1] >= 0);
+        if (!is_new_chord(b, h->face, end)) {
+            return RUGA_OK;
+        }
+        RUGA_TRY(add_chord(b, (ruga_chord){h->face, {end[0], end[1]}, curve, {along[0], along[1]}}));
+    } else {
+        int e = ruga_edge_between(&r->edges, g->vertex, h->vertex);
+        RUGA_ASSERT(e >= 0);
+        if (r->edges.edge_triangle[e][0] < 0 || r->edges.edge_triangle[e][1] < 0 || r->crease[e] >= 0) {
+            return RUGA_OK;
+        }
+        r->crease[e] = curve;
+        int first = r->edges.edge[e][0] != g->vertex;
+        r->crease_along[e][first] = along[0];
+        r->crease_along[e][1 - first] = along[1];
+    }
+    note_hit(b, g, curve);
+    note_hit(b, h, curve);
+    return RUGA_OK;
+}
+
+static ruga_status add_path(build* b, const ruga_path* path) {
+    ruga_curve_facts* facts = &b->raster->facts[path->curve];
+    const ruga_hits* hits = &path->hits;
+    double before[3], at[3], next[3];
+    for (int i = 0; i < hits->count; i++) {
+        ruga_hit_position(b->sheet, &hits->hit[i], at);
+        if (i > 0) {
+            double along[2] = {facts->length, facts->length + ruga_distance(before, at)};
+            facts->length = along[1];
+            RUGA_TRY(add_link(b, &hits->hit[i], path->curve, along));
+        }
+        if (i > 0 && i + 1 < hits->count) {
+            double u[3], v[3], c[3];
+            ruga_hit_position(b->sheet, &hits->hit[i + 1], next);
+            ruga_subtract(at, before, u);
+            ruga_subtract(next, before, v);
+            ruga_cross(u, v, c);
+            facts->bent = facts->bent || ruga_norm(c) > STRAIGHT * b->sheet->edge * ruga_norm(v);
+        }
+        memcpy(before, at, sizeof before);
+    }
+    facts->hits += hits->count;
+    return RUGA_OK;
+}
+
+// Sorted by triangle, the order within a triangle kept.
+static ruga_status sort_chords(ruga_raster* r) {
+    ruga_chord* sorted = NULL;
+    int* start = NULL;
+    RUGA_TRY(RUGA_NEW_ZERO(r->chord_start, (size_t)r->mesh.triangle_count + 1));
+    RUGA_TRY(RUGA_NEW(sorted, r->chord_count));
+    start = r->chord_start;
+    for (int k = 0; k < r->chord_count; k++) {
+        start[r->chord[k].triangle]++;
+    }
+    for (int f = 0; f < r->mesh.triangle_count; f++) {
+        start[f + 1] += start[f];
+    }
+    for (int k = r->chord_count - 1; k >= 0; k--) {
+        sorted[--start[r->chord[k].triangle]] = r->chord[k];
+    }
+    ruga_release(r->chord);
+    r->chord = sorted;
+    return RUGA_OK;
+}
+
+static void decide_freedom(ruga_raster* r) {
+    for (int c = 0; c < r->curve_count; c++) {
+        const ruga_curve* curve = &r->curve[c];
+        ruga_curve_facts* f = &r->facts[c];
+        f->full =
+            curve->freedom == RUGA_FREEDOM_FULL ||
+            (curve->freedom == RUGA_FREEDOM_AUTO && (f->bent || f->meets || curve->closed || curve->varies));
+    }
+}
+
+static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_curves* curves) {
+    ruga_raster* r = b->raster;
+    int vertices = r->mesh.vertex_count, edges = r->edges.edge_count;
+    r->curve_count = curves->count;
+    RUGA_TRY(RUGA_NEW_ZERO(r->node, edges));
+    RUGA_TRY(RUGA_NEW(r->crease, edges));
+    RUGA_TRY(RUGA_NEW_ZERO(r->crease_along, edges));
+    RUGA_TRY(RUGA_NEW(r->curve, curves->count));
+    RUGA_TRY(RUGA_NEW_ZERO(r->facts, curves->count));
+    RUGA_TRY(RUGA_NEW(b->first_curve, vertices));
+    RUGA_TRY(RUGA_NEW_ZERO(b->links, vertices));
+    RUGA_TRY(RUGA_NEW_ZERO(b->node_links, edges));
+    RUGA_TRY(RUGA_NEW(b->node_curve, edges));
+    RUGA_TRY(RUGA_NEW(b->head, r->mesh.triangle_count));
+    memset(b->head, -1, (size_t)r->mesh.triangle_count * sizeof *b->head);
+    memset(r->crease, -1, (size_t)edges * sizeof *r->crease);
+    memset(b->node_curve, -1, (size_t)edges * sizeof *b->node_curve);
+    memset(b->first_curve, -1, (size_t)vertices * sizeof *b->first_curve);
+    for (int c = 0; c < curves->count; c++) {
+        r->curve[c] = curves->curve[c];
+        r->curve[c].point = NULL;
+        r->curve[c].vertex = NULL;
+    }
+    for (int p = 0; p < paths->count; p++) {
+        RUGA_TRY(add_path(b, &paths->path[p]));
+    }
+    decide_freedom(r);
+    return sort_chords(r);
+}
+
+ruga_status ruga_raster_create(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
+                               ruga_raster* raster) {
+    ruga_status status = RUGA_OK;
+    *raster = (ruga_raster){0};
+    ruga_sheet sheet = {0};
+    ruga_paths paths = {0};
+    ruga_mend mend = {.sheet = &sheet, .paths = &paths, .def = def};
+    build b = {.raster = raster, .sheet = &sheet};
+    bool fits = false;
+    RUGA_TRY_DONE(ruga_sheet_create(mesh, &sheet));
+    RUGA_TRY_DONE(ruga_paths_create(&sheet, curves, def->snap, def->corner, &paths));
+    for (; !fits && raster->rounds < def->rounds; raster->rounds++) {
+        RUGA_TRY_DONE(ruga_mend_round(&mend, &fits));
+    }
+    if (!fits) {
+        status = ruga_mend_give_up(&mend);
+        goto done;
+    }
+    for (int p = 0; p < paths.count && def->extend; p++) {
+        RUGA_TRY_DONE(extend_path(&sheet, &paths.path[p]));
+    }
+    if (!def->snap && def->extend) {
+        RUGA_TRY_DONE(ruga_mend_check(&mend));
+    }
+    raster->mesh = sheet.mesh;
+    raster->edges = sheet.edges;
+    sheet.mesh = (ruga_mesh){0};
+    sheet.edges = (ruga_connectivity){0};
+    b.sheet = &(ruga_sheet){.mesh = raster->mesh, .edges = raster->edges, .edge = sheet.edge};
+    RUGA_TRY_DONE(build_chords(&b, &paths, curves));
+    raster->moved = mend.moved;
+    raster->split_edges = mend.split_edges;
+    raster->split_faces = mend.split_faces;
+done:
+    ruga_release(b.first_curve);
+    ruga_release(b.links);
+    ruga_release(b.node_links);
+    ruga_release(b.node_curve);
+    ruga_release(b.head);
+    ruga_release(b.next);
+    ruga_mend_clear(&mend);
+    ruga_paths_clear(&paths);
+    ruga_sheet_clear(&sheet);
+    if (status != RUGA_OK) {
+        ruga_raster_clear(raster);
+    }
+    return status;
+}

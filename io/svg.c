@@ -1,0 +1,468 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// Crease patterns drawn as SVG, with the colours of Origami Simulator (Ghassaei, Demaine and Gershenfeld
+// 2018) and tools like it. The hue of a stroke says what a line is, so that nearby shades do as well:
+//   black             border          red     mountain        blue    valley
+//   yellow, cyan, grey  flat          magenta unassigned      green   cut
+// For mountains and valleys an opacity below 1 is the fold angle as a part of 180 degrees. Strokes come from
+// attributes, style="" and classes of a <style> sheet, and are inherited. A drawing is read twice: first for
+// its size, which the tolerance for curves is a part of, then for its lines.
+#include "io/fold.h"
+
+#include "core/memory.h"
+#include "core/vec3.h"
+#include "io/svg_path.h"
+#include "io/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_DEPTH = 200, MOST_POINTS = 1000000 };
+static const double WELD = 1e-4; // of the drawing's size
+
+typedef struct style {
+    ruga_svg_transform transform;
+    long stroke; // 0xrrggbb, -1 = none
+    double opacity, stroke_opacity;
+    bool hidden;
+} style;
+
+typedef struct reader {
+    ruga_xml xml;
+    ruga_crease_pattern* pattern; // NULL in the first pass
+    double scale, tolerance;
+    double low[2], high[2];
+    style stack[MOST_DEPTH];
+    int depth;
+    ruga_slice sheet; // text of <style>
+    int without_stroke, white;
+    ruga_assignment assignment; // of the shape at hand
+    double angle;
+} reader;
+
+// ------------------------------------------------------------------------------- colours
+
+static bool read_hex(ruga_slice text, long* colour) {
+    if (text.at[0] != '#' || (text.length != 4 && text.length != 7)) {
+        return false;
+    }
+    char digits[8];
+    memcpy(digits, text.at + 1, text.length - 1);
+    digits[text.length - 1] = '\0';
+    char* end;
+    long value = strtol(digits, &end, 16);
+    if (*end) {
+        return false;
+    }
+    *colour =
+        text.length == 7 ? value : (value >> 8) * 0x110000 + (value >> 4 & 15) * 0x1100 + (value & 15) * 0x11;
+    return true;
+}
+
+static bool read_rgb(ruga_slice text, long* colour) {
+    if (text.length < 5 || memcmp(text.at, "rgb", 3) != 0) {
+        return false;
+    }
+    const char *p = memchr(text.at, '(', text.length), *end = text.at + text.length;
+    *colour = 0;
+    for (int i = 0; p && i < 3; i++) {
+        double value;
+        p += i == 0;
+        if (!ruga_svg_number(&p, end, &value)) {
+            return false;
+        }
+        bool percent = p < end && *p == '%';
+        p += percent;
+        value = percent ? value * 2.55 : value;
+        *colour = *colour * 256 + (value < 0 ? 0 : value > 255 ? 255 : (long)(value + 0.5));
+    }
+    return p != NULL;
+}
+
+static long read_colour(ruga_slice text, long before) {
+    static const struct {
+        const char* name;
+        long colour;
+    } names[] = {{"none", -1},
+                 {"transparent", -1},
+                 {"black", 0x000000},
+                 {"red", 0xff0000},
+                 {"blue", 0x0000ff},
+                 {"yellow", 0xffff00},
+                 {"green", 0x008000},
+                 {"lime", 0x00ff00},
+                 {"magenta", 0xff00ff},
+                 {"fuchsia", 0xff00ff},
+                 {"cyan", 0x00ffff},
+                 {"aqua", 0x00ffff},
+                 {"gray", 0x808080},
+                 {"grey", 0x808080},
+                 {"silver", 0xc0c0c0},
+                 {"lightgray", 0xd3d3d3},
+                 {"lightgrey", 0xd3d3d3},
+                 {"white", 0xffffff},
+                 {"navy", 0x000080},
+                 {"maroon", 0x800000},
+                 {"purple", 0x800080},
+                 {"teal", 0x008080},
+                 {"olive", 0x808000}};
+    long colour;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        if (ruga_slice_is(text, names[i].name)) {
+            return names[i].colour;
+        }
+    }
+    return text.length > 0 && (read_hex(text, &colour) || read_rgb(text, &colour)) ? colour : before;
+}
+
+// By hue in steps of 60 degrees; greys by their brightness. COUNT = white, which is no line.
+static ruga_assignment assignment_of(long colour) {
+    double r = (double)(colour >> 16 & 255) / 255, g = (double)(colour >> 8 & 255) / 255,
+           b = (double)(colour & 255) / 255;
+    double most = fmax(r, fmax(g, b)), least = fmin(r, fmin(g, b));
+    static const double grey = 0.25, black = 0.35, white = 0.95;
+    if (most - least < grey * most || most < 0.15) {
+        return most < black    ? RUGA_ASSIGNMENT_BORDER
+               : least > white ? RUGA_ASSIGNMENT_COUNT
+                               : RUGA_ASSIGNMENT_FLAT;
+    }
+    double span = most - least;
+    double hue = most == r ? (g - b) / span : most == g ? 2 + (b - r) / span : 4 + (r - g) / span;
+    static const ruga_assignment wheel[6] = {RUGA_ASSIGNMENT_MOUNTAIN, RUGA_ASSIGNMENT_FLAT,
+                                             RUGA_ASSIGNMENT_CUT,      RUGA_ASSIGNMENT_FLAT,
+                                             RUGA_ASSIGNMENT_VALLEY,   RUGA_ASSIGNMENT_UNASSIGNED};
+    return wheel[((int)floor(hue + 0.5) + 6) % 6];
+}
+
+// ------------------------------------------------------------------------------- styles
+
+static ruga_slice trim(const char* begin, const char* end) {
+    while (begin < end && (*begin == ' ' || *begin == '\n' || *begin == '\t' || *begin == '\r')) {
+        begin++;
+    }
+    while (end > begin && (end[-1] == ' ' || end[-1] == '\n' || end[-1] == '\t' || end[-1] == '\r')) {
+        end--;
+    }
+    return (ruga_slice){begin, (size_t)(end - begin)};
+}
+
+static double read_opacity(ruga_slice text, double before) {
+    const char* p = text.at;
+    double value;
+    if (!text.at || !ruga_svg_number(&p, text.at + text.length, &value)) {
+        return before;
+    }
+    value = p < text.at + text.length && *p == '%' ? value / 100 : value;
+    return value < 0 ? 0 : value > 1 ? 1 : value;
+}
+
+static void set_property(style* s, double outer_opacity, ruga_slice name, ruga_slice value) {
+    if (ruga_slice_is(name, "stroke")) {
+        s->stroke = read_colour(value, s->stroke);
+    } else if (ruga_slice_is(name, "opacity")) {
+        s->opacity = outer_opacity * read_opacity(value, 1);
+    } else if (ruga_slice_is(name, "stroke-opacity")) {
+        s->stroke_opacity = read_opacity(value, s->stroke_opacity);
+    } else if (ruga_slice_is(name, "display")) {
+        s->hidden = s->hidden || ruga_slice_is(value, "none");
+    } else if (ruga_slice_is(name, "visibility")) {
+        s->hidden = s->hidden || ruga_slice_is(value, "hidden");
+    }
+}
+
+// "name: value; name: value"
+static void set_declarations(style* s, double outer_opacity, ruga_slice text) {
+    const char *p = text.at, *end = p + text.length;
+    while (p < end) {
+        const char* stop = memchr(p, ';', (size_t)(end - p));
+        stop = stop ? stop : end;
+        const char* colon = memchr(p, ':', (size_t)(stop - p));
+        if (colon) {
+            set_property(s, outer_opacity, trim(p, colon), trim(colon + 1, stop));
+        }
+        p = stop + 1;
+    }
+}
+
+// Whether a list of selectors ".a, .b" names a class.
+static bool names_class(ruga_slice selectors, ruga_slice name) {
+    const char *p = selectors.at, *end = p + selectors.length;
+    while (p < end) {
+        const char* comma = memchr(p, ',', (size_t)(end - p));
+        comma = comma ? comma : end;
+        ruga_slice one = trim(p, comma);
+        if (one.length == name.length + 1 && one.at[0] == '.' &&
+            memcmp(one.at + 1, name.at, name.length) == 0) {
+            return true;
+        }
+        p = comma + 1;
+    }
+    return false;
+}
+
+static void set_class(const reader* r, style* s, double outer_opacity, ruga_slice name) {
+    const char *p = r->sheet.at, *end = p ? p + r->sheet.length : p;
+    while (p && p < end) {
+        const char* open = memchr(p, '{', (size_t)(end - p));
+        const char* close = open ? memchr(open, '}', (size_t)(end - open)) : NULL;
+        if (!close) {
+            return;
+        }
+        if (names_class((ruga_slice){p, (size_t)(open - p)}, name)) {
+            set_declarations(s, outer_opacity, (ruga_slice){open + 1, (size_t)(close - open - 1)});
+        }
+        p = close + 1;
+    }
+}
+
+static ruga_status fail(const reader* r, const char* what) {
+    return ruga_fail(RUGA_BAD_INPUT, "%s:%d: %s", r->xml.path, r->xml.line, what);
+}
+
+// The style of the tag at hand, from that around it.
+static ruga_status read_style(const reader* r, const style* outer, style* s) {
+    static const char* const names[] = {"stroke", "opacity", "stroke-opacity", "display", "visibility"};
+    *s = *outer;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        ruga_slice value = ruga_xml_attribute(&r->xml, names[i]);
+        if (value.at) {
+            set_property(s, outer->opacity, (ruga_slice){names[i], strlen(names[i])},
+                         trim(value.at, value.at + value.length));
+        }
+    }
+    ruga_slice classes = ruga_xml_attribute(&r->xml, "class");
+    for (const char *p = classes.at, *end = p ? p + classes.length : p; p && p < end;) {
+        const char* stop = memchr(p, ' ', (size_t)(end - p));
+        stop = stop ? stop : end;
+        set_class(r, s, outer->opacity, (ruga_slice){p, (size_t)(stop - p)});
+        p = stop + 1;
+    }
+    ruga_slice own = ruga_xml_attribute(&r->xml, "style");
+    if (own.at) {
+        set_declarations(s, outer->opacity, own);
+    }
+    ruga_slice moved = ruga_xml_attribute(&r->xml, "transform");
+    if (moved.at) {
+        ruga_svg_transform transform;
+        if (!ruga_svg_parse_transform(moved, &transform)) {
+            return fail(r, "the transform cannot be read");
+        }
+        s->transform = ruga_svg_compose(&transform, &outer->transform);
+    }
+    return RUGA_OK;
+}
+
+// ------------------------------------------------------------------------------- shapes
+
+static ruga_status take_line(const double from[2], const double to[2], void* context) {
+    reader* r = context;
+    const double* const end[2] = {from, to};
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < 2; i++) {
+            r->low[i] = fmin(r->low[i], end[k][i]);
+            r->high[i] = fmax(r->high[i], end[k][i]);
+        }
+    }
+    if (!r->pattern || (from[0] == to[0] && from[1] == to[1])) {
+        return RUGA_OK;
+    }
+    int v = r->pattern->vertex_count;
+    for (int k = 0; k < 2; k++) {
+        // y points down in a drawing, up in a pattern: seen from the front, nothing is mirrored.
+        const double x[3] = {r->scale * end[k][0], -r->scale * end[k][1], 0};
+        RUGA_TRY(ruga_crease_pattern_add_vertex(r->pattern, x));
+    }
+    return ruga_crease_pattern_add_edge(r->pattern, v, v + 1, r->assignment, r->angle);
+}
+
+static double number_of(const reader* r, const char* name) {
+    ruga_slice text = ruga_xml_attribute(&r->xml, name);
+    double value = 0;
+    const char* p = text.at;
+    return text.at && ruga_svg_number(&p, text.at + text.length, &value) ? value : 0;
+}
+
+static ruga_status draw_listed_points(const reader* r, const ruga_svg_pen* pen, bool closed) {
+    ruga_slice text = ruga_xml_attribute(&r->xml, "points");
+    double(*point)[2] = NULL;
+    int count = 0, capacity = 0;
+    ruga_status status = RUGA_OK;
+    const char* p = text.at;
+    double x[2];
+    while (text.at && count < MOST_POINTS && ruga_svg_number(&p, text.at + text.length, &x[0]) &&
+           ruga_svg_number(&p, text.at + text.length, &x[1])) {
+        RUGA_TRY_DONE(RUGA_RESERVE(point, capacity, (size_t)count + 1));
+        memcpy(point[count++], x, sizeof x);
+    }
+    if (text.at && trim(p, text.at + text.length).length > 0) {
+        status = fail(r, "the list of points cannot be read");
+        goto done;
+    }
+    RUGA_TRY_DONE(ruga_svg_draw_points(pen, count, (const double(*)[2])point, closed));
+done:
+    ruga_release(point);
+    return status;
+}
+
+static ruga_status draw_path(const reader* r, const ruga_svg_pen* pen) {
+    ruga_slice data = ruga_xml_attribute(&r->xml, "d");
+    const char* bad = NULL;
+    if (!data.at) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(ruga_svg_draw_path(pen, data, &bad));
+    if (bad) {
+        int length = (int)(data.at + data.length - bad);
+        return ruga_fail(RUGA_BAD_INPUT, "%s:%d: path data cannot be read from \"%.*s\" on", r->xml.path,
+                         r->xml.line, length < 20 ? length : 20, bad);
+    }
+    return RUGA_OK;
+}
+
+static ruga_status draw_shape(reader* r, const ruga_svg_pen* pen) {
+    ruga_slice name = r->xml.name;
+    if (ruga_slice_is(name, "path")) {
+        return draw_path(r, pen);
+    }
+    if (ruga_slice_is(name, "polyline") || ruga_slice_is(name, "polygon")) {
+        return draw_listed_points(r, pen, ruga_slice_is(name, "polygon"));
+    }
+    if (ruga_slice_is(name, "line")) {
+        const double p[2][2] = {{number_of(r, "x1"), number_of(r, "y1")},
+                                {number_of(r, "x2"), number_of(r, "y2")}};
+        return ruga_svg_draw_points(pen, 2, p, false);
+    }
+    if (ruga_slice_is(name, "rect")) {
+        double x = number_of(r, "x"), y = number_of(r, "y"), w = number_of(r, "width"),
+               h = number_of(r, "height");
+        const double p[4][2] = {{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}};
+        return ruga_svg_draw_points(pen, 4, p, true);
+    }
+    bool circle = ruga_slice_is(name, "circle");
+    const double center[2] = {number_of(r, "cx"), number_of(r, "cy")};
+    const double radius[2] = {number_of(r, circle ? "r" : "rx"), number_of(r, circle ? "r" : "ry")};
+    return ruga_svg_draw_ellipse(pen, center, radius);
+}
+
+static bool is_one_of(ruga_slice name, const char* const* list) {
+    for (; *list; list++) {
+        if (ruga_slice_is(name, *list)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static ruga_status read_shape(reader* r, const style* s) {
+    r->without_stroke += s->stroke < 0;
+    if (s->hidden || s->stroke < 0) {
+        return RUGA_OK;
+    }
+    r->assignment = assignment_of(s->stroke);
+    if (r->assignment == RUGA_ASSIGNMENT_COUNT) {
+        r->white++;
+        return RUGA_OK;
+    }
+    double part = s->opacity * s->stroke_opacity;
+    bool folds = r->assignment == RUGA_ASSIGNMENT_MOUNTAIN || r->assignment == RUGA_ASSIGNMENT_VALLEY;
+    r->angle = folds && part < 1 ? (r->assignment == RUGA_ASSIGNMENT_VALLEY ? part : -part) * RUGA_PI : NAN;
+    const ruga_svg_pen pen = {s->transform, r->tolerance, take_line, r};
+    return draw_shape(r, &pen);
+}
+
+// The text of a <style> element; several are not looked for.
+static void keep_sheet(reader* r) {
+    const char* end = r->xml.after;
+    while (end < r->xml.end && !(end[0] == '<' && end[1] == '/')) {
+        end++;
+    }
+    r->sheet = (ruga_slice){r->xml.after, (size_t)(end - r->xml.after)};
+}
+
+static ruga_status read_tag(reader* r) {
+    static const char* const shapes[] = {"path", "polyline", "polygon", "line",
+                                         "rect", "circle",   "ellipse", NULL};
+    static const char* const unseen[] = {"defs", "symbol", "clipPath", "mask", "pattern", "marker", NULL};
+    ruga_xml* xml = &r->xml;
+    if (!xml->opens) {
+        r->depth -= r->depth > 0;
+        return RUGA_OK;
+    }
+    style s;
+    RUGA_TRY(read_style(r, &r->stack[r->depth], &s));
+    s.hidden = s.hidden || is_one_of(xml->name, unseen);
+    if (ruga_slice_is(xml->name, "style")) {
+        keep_sheet(r);
+    }
+    if (is_one_of(xml->name, shapes)) {
+        RUGA_TRY(read_shape(r, &s));
+    }
+    if (!xml->closes) {
+        if (r->depth + 1 == MOST_DEPTH) {
+            return fail(r, "elements are nested too deeply");
+        }
+        r->stack[++r->depth] = s;
+    }
+    return RUGA_OK;
+}
+
+static ruga_status read_drawing(reader* r, const ruga_text* text) {
+    ruga_xml_begin(text->path, text->data, text->size, &r->xml);
+    r->depth = r->without_stroke = r->white = 0;
+    r->stack[0] = (style){.transform = {{1, 0, 0, 1, 0, 0}}, .stroke = -1, .opacity = 1, .stroke_opacity = 1};
+    for (int i = 0; i < 2; i++) {
+        r->low[i] = INFINITY;
+        r->high[i] = -INFINITY;
+    }
+    for (bool found = true; found;) {
+        RUGA_TRY(ruga_xml_next(&r->xml, &found));
+        if (found) {
+            RUGA_TRY(read_tag(r));
+        }
+    }
+    return RUGA_OK;
+}
+
+static ruga_status read_pattern(reader* r, const ruga_text* text, double tolerance,
+                                ruga_crease_pattern* pattern) {
+    RUGA_TRY(read_drawing(r, text));
+    double size = hypot(r->high[0] - r->low[0], r->high[1] - r->low[1]);
+    if (!(size > 0) || !isfinite(size)) {
+        return ruga_fail(RUGA_BAD_INPUT,
+                         "%s: the drawing has no stroked lines: a crease pattern is drawn in strokes",
+                         text->path);
+    }
+    r->pattern = pattern;
+    r->tolerance = tolerance * size;
+    RUGA_TRY(read_drawing(r, text));
+    if (r->without_stroke > 0) {
+        RUGA_TRY(
+            ruga_crease_pattern_note(pattern, "%d shapes without a stroke were left out", r->without_stroke));
+    }
+    if (r->white > 0) {
+        RUGA_TRY(ruga_crease_pattern_note(pattern, "%d white shapes were left out", r->white));
+    }
+    ruga_status status = ruga_crease_pattern_arrange(pattern, WELD * size * r->scale);
+    return status == RUGA_OK ? status : ruga_fail_prefix(status, "%s", text->path);
+}
+
+ruga_status ruga_svg_read(const char* path, double scale, double tolerance, ruga_crease_pattern* pattern) {
+    ruga_text text;
+    reader* r = NULL;
+    *pattern = (ruga_crease_pattern){0};
+    RUGA_TRY(ruga_text_open(path, &text));
+    ruga_status status = RUGA_NEW_ZERO(r, 1);
+    if (status == RUGA_OK) {
+        r->scale = scale;
+        status = read_pattern(r, &text, tolerance, pattern);
+    }
+    ruga_release(r);
+    ruga_text_close(&text);
+    if (status != RUGA_OK) {
+        ruga_crease_pattern_clear(pattern);
+    }
+    return status;
+}

@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+#include "tests/check.h"
+#include "tests/crease_case.h"
+#include "tests/scarce_memory.h"
+
+#include "solver/creased.h"
+
+static const double DEGREE = RUGA_PI / 180;
+
+typedef struct panel {
+    crease_case c;
+    double *x, *stiffness, *rest;
+    bool* fixed;
+    ruga_creased_def def;
+    ruga_creased* creased;
+} panel;
+
+// Mean of a piece's corners.
+static void middle_of(const crease_case* c, const ruga_cut_piece* piece, double middle[3]) {
+    double x[RUGA_BORDER_PLACES][3];
+    ruga_raster_places(&c->raster, piece->triangle, x);
+    memset(middle, 0, 3 * sizeof *middle);
+    for (int k = 0; k < piece->polygon.count; k++) {
+        ruga_add_scaled(1.0 / piece->polygon.count, x[piece->polygon.place[k]], middle);
+    }
+}
+
+// Turns all nodes of pieces with x > line up by `angle` about the line x = `line`, z = 0.
+static void fold(panel* p, double line, double angle) {
+    for (int k = 0; k < p->c.cut.piece_count; k++) {
+        const ruga_cut_piece* piece = &p->c.cut.piece[k];
+        double middle[3];
+        middle_of(&p->c, piece, middle);
+        for (int i = 0; i < 3; i++) {
+            const double* from = p->c.raster.mesh.position + 3 * p->c.cut.source[piece->node[i]];
+            double* to = p->x + 3 * piece->node[i];
+            double turn = middle[0] > line ? angle : 0, arm = from[0] - line;
+            to[0] = line + arm * cos(turn);
+            to[1] = from[1];
+            to[2] = arm * sin(turn);
+        }
+    }
+}
+
+// 8 x 4 squares of 1 m, a crease across at x = `line`; all copies left of it held. Gravity -z.
+static void make_panel(ruga_crease_freedom freedom, double line, double stiffness, panel* p) {
+    *p = (panel){.def = ruga_default_creased_def()};
+    const ruga_raster_def raster = ruga_default_raster_def();
+    make_squares(8, 4, true, &p->c.mesh);
+    add_line(&p->c.curves, freedom, line, -1, line, 5);
+    assert_ok(ruga_raster_create(&p->c.mesh, &p->c.curves, &raster, &p->c.raster));
+    assert_ok(ruga_cut_create(&p->c.raster, &p->c.cut));
+    int nodes = p->c.cut.node_count, segments = p->c.cut.segment_count;
+    p->x = malloc((size_t)nodes * 3 * sizeof *p->x);
+    p->fixed = calloc((size_t)nodes, sizeof *p->fixed);
+    p->stiffness = malloc((size_t)segments * sizeof *p->stiffness);
+    p->rest = calloc((size_t)segments, sizeof *p->rest);
+    for (int s = 0; s < segments; s++) {
+        p->stiffness[s] = stiffness;
+    }
+    for (int k = 0; k < p->c.cut.piece_count; k++) {
+        double middle[3];
+        middle_of(&p->c, &p->c.cut.piece[k], middle);
+        for (int i = 0; i < 3 && middle[0] < line; i++) {
+            p->fixed[p->c.cut.piece[k].node[i]] = true;
+        }
+    }
+    p->def.raster = &p->c.raster;
+    p->def.cut = &p->c.cut;
+    p->def.skin = (ruga_skin_def){.thickness = 0.05, .young = 1e9, .poisson = 0.3, .density = 1000};
+    p->def.stiffness = p->stiffness;
+    p->def.fixed = p->fixed;
+    p->def.gravity[2] = -9.81;
+}
+
+static void clear_panel(panel* p) {
+    ruga_creased_destroy(&p->creased);
+    free(p->x);
+    free(p->fixed);
+    free(p->stiffness);
+    free(p->rest);
+    clear_case(&p->c);
+}
+
+static void a_free_hinge_hangs_straight_down(void** state) {
+    (void)state;
+    for (int full = 0; full < 2; full++) {
+        panel p;
+        ruga_creased_report report;
+        make_panel(full ? RUGA_FREEDOM_FULL : RUGA_FREEDOM_SINGLE, 3.4, 0, &p);
+        assert_ok(ruga_creased_create(&p.def, &p.creased));
+        fold(&p, 3.4, -50 * DEGREE);
+        assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &report));
+        const double* angle = ruga_creased_angles(p.creased);
+        print_message("outcome %d after %d iterations (%d factors), residual %.2g, gap %.2g\n",
+                      report.outcome, report.iterations, report.factorizations, report.residual, report.gap);
+        assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+        assert_true(report.gap < 1e-12);
+        for (int s = 0; s < p.c.cut.segment_count; s++) {
+            if (p.c.cut.segment[s].curve >= 0) {
+                assert_near(angle[s], -90 * DEGREE, 1e-3 * DEGREE);
+            }
+        }
+        clear_panel(&p);
+    }
+}
+
+static double mean_angle(const panel* p) {
+    const double* angle = ruga_creased_angles(p->creased);
+    double sum = 0, length = 0;
+    for (int s = 0; s < p->c.cut.segment_count; s++) {
+        const ruga_segment* segment = &p->c.cut.segment[s];
+        sum += segment->curve >= 0 ? segment->length * angle[s] : 0;
+        length += segment->curve >= 0 ? segment->length : 0;
+    }
+    return sum / length;
+}
+
+static void a_spring_hinge_balances_the_weight_of_a_stiff_panel(void** state) {
+    (void)state;
+    const double stiffness[] = {5000, 20000, 100000};
+    for (int k = 0; k < 3; k++) {
+        panel p;
+        ruga_creased_report report;
+        make_panel(RUGA_FREEDOM_SINGLE, 3.4, stiffness[k], &p);
+        p.def.skin.young = 1e12;
+        p.def.tolerance = 1e-7; // round-off of forces E h (1e10 N/m) against a weight of 1e4 N
+        assert_ok(ruga_creased_create(&p.def, &p.creased));
+        fold(&p, 3.4, -30 * DEGREE);
+        assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &report));
+        assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+        // k L theta = M cos(theta), M = rho h g L arm^2 / 2
+        double moment = 1000 * 0.05 * 9.81 * 4 * 4.6 * 4.6 / 2, theta = 0.5;
+        for (int i = 0; i < 50; i++) {
+            theta -=
+                (stiffness[k] * 4 * theta - moment * cos(theta)) / (stiffness[k] * 4 + moment * sin(theta));
+        }
+        print_message("k = %g: %.4f degrees, rigid %.4f\n", stiffness[k], mean_angle(&p) / DEGREE,
+                      -theta / DEGREE);
+        assert_near(mean_angle(&p), -theta, 0.1 * DEGREE);
+        clear_panel(&p);
+    }
+}
+
+static void a_solution_is_kept(void** state) {
+    (void)state;
+    panel p;
+    ruga_creased_report report;
+    make_panel(RUGA_FREEDOM_FULL, 3.4, 5000, &p);
+    assert_ok(ruga_creased_create(&p.def, &p.creased));
+    fold(&p, 3.4, -30 * DEGREE);
+    assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &report));
+    size_t bytes = (size_t)p.c.cut.node_count * 3 * sizeof *p.x;
+    double* before = malloc(bytes);
+    memcpy(before, p.x, bytes);
+    assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &report));
+    for (int i = 0; i < 3 * p.c.cut.node_count; i++) {
+        assert_near(p.x[i], before[i], 1e-8);
+    }
+    assert_true(report.iterations <= 1);
+    free(before);
+    clear_panel(&p);
+}
+
+// The mesh that conforms to the cut of `p`: its material, with the creases along mesh edges, in the same
+// state.
+static void make_conforming(const panel* p, panel* q) {
+    *q = (panel){.def = p->def};
+    ruga_connectivity edges;
+    const ruga_raster_def raster = ruga_default_raster_def();
+    assert_ok(ruga_mesh_copy(&p->c.cut.material, &q->c.mesh));
+    assert_ok(ruga_connectivity_create(&q->c.mesh, &edges));
+    bool* marked = calloc((size_t)edges.edge_count, sizeof *marked);
+    for (int s = 0; s < p->c.cut.segment_count; s++) {
+        const ruga_segment* segment = &p->c.cut.segment[s];
+        if (segment->curve >= 0) {
+            marked[ruga_edge_between(&edges, segment->end[0], segment->end[1])] = true;
+        }
+    }
+    assert_ok(ruga_curves_add_edges(&q->c.curves, &(ruga_curve){0}, &q->c.mesh, &edges, marked));
+    assert_ok(ruga_raster_create(&q->c.mesh, &q->c.curves, &raster, &q->c.raster));
+    assert_ok(ruga_cut_create(&q->c.raster, &q->c.cut));
+    int nodes = q->c.cut.node_count;
+    assert_int_equal(nodes, p->c.cut.material.vertex_count);
+    q->x = malloc((size_t)nodes * 3 * sizeof *q->x);
+    q->fixed = calloc((size_t)nodes, sizeof *q->fixed);
+    q->stiffness = calloc((size_t)q->c.cut.segment_count, sizeof *q->stiffness);
+    q->rest = calloc((size_t)q->c.cut.segment_count, sizeof *q->rest);
+    for (int s = 0; s < q->c.cut.segment_count; s++) {
+        q->stiffness[s] = p->stiffness[0];
+    }
+    ruga_cut_material(&p->c.cut, p->x, q->x);
+    for (int n = 0; n < p->c.cut.real_count; n++) {
+        q->fixed[n] = p->fixed[n];
+    }
+    for (int b = 0; b < p->c.cut.bound_count; b++) {
+        const ruga_bound* bound = &p->c.cut.bound[b];
+        bool held = false;
+        for (int k = 0; k < bound->count; k++) {
+            const int* parent = p->c.cut.parent[bound->first + k];
+            held = held || (p->fixed[parent[0]] && p->fixed[parent[1]]);
+        }
+        q->fixed[p->c.cut.real_count + b] = held;
+    }
+    q->def.raster = &q->c.raster;
+    q->def.cut = &q->c.cut;
+    q->def.stiffness = q->stiffness;
+    q->def.fixed = q->fixed;
+    free(marked);
+    ruga_connectivity_clear(&edges);
+}
+
+// A crease whose embedded nodes are off straight by up to `off` of an edge, hanging under gravity from a
+// fold.
+static void hang_kinked(ruga_crease_freedom freedom, double off, panel* p, ruga_creased_report* report) {
+    ruga_random random = {21};
+    make_panel(freedom, 3.4, 0, p);
+    ruga_cut_clear(&p->c.cut);
+    for (int e = 0; e < p->c.raster.edges.edge_count; e++) {
+        double by = off * (2 * ruga_random_uniform(&random) - 1);
+        p->c.raster.node[e] += p->c.raster.node[e] > 0 ? by : 0;
+    }
+    assert_ok(ruga_cut_create(&p->c.raster, &p->c.cut));
+    assert_ok(ruga_creased_create(&p->def, &p->creased));
+    ruga_cut_rest(&p->c.raster, &p->c.cut, p->x);
+    assert_ok(ruga_creased_solve(p->creased, p->rest, p->x, report));
+}
+
+static void a_kinked_crease_locks_but_for_auxiliary_chords(void** state) {
+    (void)state;
+    panel single, full, conforming;
+    ruga_creased_report report, fine;
+    hang_kinked(RUGA_FREEDOM_SINGLE, 1e-2, &single, &report);
+    print_message("single: %.3f degrees, outcome %d, residual %.2g, %d iterations\n",
+                  mean_angle(&single) / DEGREE, report.outcome, report.residual, report.iterations);
+    hang_kinked(RUGA_FREEDOM_FULL, 1e-2, &full, &report);
+    print_message("full: %.3f degrees, outcome %d, residual %.2g, %d iterations\n",
+                  mean_angle(&full) / DEGREE, report.outcome, report.residual, report.iterations);
+    make_conforming(&full, &conforming);
+    assert_ok(ruga_creased_create(&conforming.def, &conforming.creased));
+    conforming.def.iterations = 0;
+    ruga_creased* still = NULL;
+    assert_ok(ruga_creased_create(&conforming.def, &still));
+    assert_ok(ruga_creased_solve(still, conforming.rest, conforming.x, &fine));
+    ruga_creased_destroy(&still);
+    print_message("same state: membrane %.6g and conforming %.6g, bending %.6g and %.6g\n", report.membrane,
+                  fine.membrane, report.bending, fine.bending);
+    assert_near(fine.membrane, report.membrane, 0.01 * fabs(report.membrane));
+    assert_ok(ruga_creased_solve(conforming.creased, conforming.rest, conforming.x, &fine));
+    print_message("conforming: %.3f degrees, outcome %d, residual %.2g, %d iterations\n",
+                  mean_angle(&conforming) / DEGREE, fine.outcome, fine.residual, fine.iterations);
+    assert_near(mean_angle(&full), mean_angle(&conforming), 0.5 * DEGREE);
+    assert_true(fabs(mean_angle(&single)) < 60 * DEGREE);
+    clear_panel(&single);
+    clear_panel(&full);
+    clear_panel(&conforming);
+}
+
+// ------------------------------------------------------------------------------- Miura-ori
+
+// Sides 1, angle 60 degrees, folded by theta (Schenk and Guest 2013).
+static void miura_vertex(int i, int j, double theta, double x[3]) {
+    double t = tan(60 * DEGREE), c = cos(theta), q = sqrt(1 + c * c * t * t);
+    x[0] = i * c * t / q;
+    x[1] = j * sqrt(1 - pow(sin(theta) * sin(60 * DEGREE), 2)) + (abs(i) % 2) / q;
+    x[2] = abs(j) % 2 * sin(theta) * sin(60 * DEGREE);
+}
+
+// The panel that holds a flat point, and where it takes x.
+static void find_panel(const double middle[3], int panel[2]) {
+    double side = sin(60 * DEGREE);
+    panel[0] = (int)floor(middle[0] / side);
+    double part = middle[0] / side - panel[0], zig = 0.5 * (abs(panel[0]) % 2 ? 1 - part : part);
+    panel[1] = (int)floor(middle[1] - zig);
+}
+
+static void fold_point(const int panel[2], double theta, const double x[3], double y[3]) {
+    double flat[3][3], folded[3][3];
+    for (int k = 0; k < 3; k++) {
+        miura_vertex(panel[0] + (k == 1), panel[1] + (k == 2), 0, flat[k]);
+        miura_vertex(panel[0] + (k == 1), panel[1] + (k == 2), theta, folded[k]);
+    }
+    double u = (x[0] - flat[0][0]) / (flat[1][0] - flat[0][0]);
+    double v = x[1] - flat[0][1] - u * (flat[1][1] - flat[0][1]);
+    for (int k = 0; k < 3; k++) {
+        y[k] = folded[0][k] + u * (folded[1][k] - folded[0][k]) + v * (folded[2][k] - folded[0][k]);
+    }
+}
+
+// The frame of a panel at theta: origin and three directions.
+static void panel_frame(const int panel[2], double theta, double frame[4][3]) {
+    double a[3], b[3];
+    miura_vertex(panel[0], panel[1], theta, frame[0]);
+    miura_vertex(panel[0], panel[1] + 1, theta, a);
+    miura_vertex(panel[0] + 1, panel[1], theta, b);
+    ruga_subtract(a, frame[0], frame[1]);
+    ruga_subtract(b, frame[0], b);
+    ruga_cross(b, frame[1], frame[3]);
+    ruga_normalize(frame[3]);
+    ruga_normalize(frame[1]);
+    ruga_cross(frame[1], frame[3], frame[2]);
+}
+
+static void miura_folds_from_flat_by_its_rest_angles(void** state) {
+    (void)state;
+    const double theta = 50 * DEGREE, side = sin(60 * DEGREE);
+    const double low[2] = {-0.6 * side, -0.47}, high[2] = {3.55 * side, 3.93};
+    const int n = 12, held[2] = {1, 1};
+    panel p = {.def = ruga_default_creased_def()};
+    const ruga_raster_def raster = ruga_default_raster_def();
+    make_squares(n, n, true, &p.c.mesh);
+    for (int v = 0; v < p.c.mesh.vertex_count; v++) {
+        for (int i = 0; i < 2; i++) {
+            p.c.mesh.position[3 * v + i] = low[i] + (high[i] - low[i]) * p.c.mesh.position[3 * v + i] / n;
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        add_line(&p.c.curves, RUGA_FREEDOM_SINGLE, i * side, -2, i * side, 6);
+    }
+    for (int j = 0; j < 4; j++) {
+        double point[6][3];
+        for (int i = -1; i < 5; i++) {
+            miura_vertex(i, j, 0, point[i + 1]);
+        }
+        const ruga_curve style = {.freedom = RUGA_FREEDOM_SINGLE};
+        assert_ok(ruga_curves_add_polyline(&p.c.curves, &style, 6, (const double(*)[3])point));
+    }
+    assert_ok(ruga_raster_create(&p.c.mesh, &p.c.curves, &raster, &p.c.raster));
+    assert_ok(ruga_cut_create(&p.c.raster, &p.c.cut));
+    int nodes = p.c.cut.node_count, segments = p.c.cut.segment_count;
+    p.x = malloc((size_t)nodes * 3 * sizeof *p.x);
+    p.fixed = calloc((size_t)nodes, sizeof *p.fixed);
+    p.stiffness = malloc((size_t)segments * sizeof *p.stiffness);
+    p.rest = calloc((size_t)segments, sizeof *p.rest);
+    // What the closed form says, where each node is, and the angles there.
+    double *wanted = malloc((size_t)nodes * 3 * sizeof *wanted),
+           *target = malloc((size_t)segments * sizeof *target);
+    double from[4][3], to[4][3];
+    panel_frame(held, theta, from);
+    panel_frame(held, 0, to);
+    for (int k = 0; k < p.c.cut.piece_count; k++) {
+        int own[2];
+        double middle[3];
+        middle_of(&p.c, &p.c.cut.piece[k], middle);
+        find_panel(middle, own);
+        for (int i = 0; i < 3; i++) {
+            int m = p.c.cut.piece[k].node[i];
+            double y[3], d[3];
+            fold_point(own, theta, p.c.raster.mesh.position + 3 * p.c.cut.source[m], y);
+            ruga_subtract(y, from[0], d);
+            memcpy(wanted + 3 * m, to[0], 3 * sizeof *wanted);
+            for (int a = 1; a < 4; a++) {
+                ruga_add_scaled(ruga_dot(d, from[a]), to[a], wanted + 3 * m);
+            }
+            p.fixed[m] = p.fixed[m] || (own[0] == held[0] && own[1] == held[1]);
+        }
+    }
+    ruga_hinge* hinge = malloc((size_t)segments * sizeof *hinge);
+    ruga_hinges_make(&p.c.raster, &p.c.cut, hinge);
+    for (int s = 0; s < segments; s++) {
+        p.stiffness[s] = 1;
+        target[s] = ruga_hinge_measure(&hinge[s], wanted, NULL, NULL);
+    }
+    p.def.raster = &p.c.raster;
+    p.def.cut = &p.c.cut;
+    p.def.stiffness = p.stiffness;
+    p.def.fixed = p.fixed;
+    p.def.skin = (ruga_skin_def){.thickness = 0.01, .young = 1e9, .poisson = 0.3, .density = 1};
+    p.def.tolerance = 5e-6; // of 1e-8 E h: no forces are left in the end
+    assert_ok(ruga_creased_create(&p.def, &p.creased));
+    ruga_cut_rest(&p.c.raster, &p.c.cut, p.x);
+    ruga_creased_report report = {0};
+    int iterations = 0;
+    for (int step = 1; step <= 10; step++) {
+        for (int s = 0; s < segments; s++) {
+            p.rest[s] = target[s] * step / 10;
+        }
+        assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &report));
+        iterations += report.iterations;
+    }
+    double worst = 0, angle = 0;
+    for (int m = 0; m < nodes; m++) {
+        worst = fmax(worst, ruga_distance(p.x + 3 * m, wanted + 3 * m));
+    }
+    for (int s = 0; s < segments; s++) {
+        angle = fmax(angle, fabs(ruga_creased_angles(p.creased)[s] - target[s]));
+    }
+    print_message(
+        "outcome %d, residual %.2g, %d iterations in all, gap %.2g, hinge %.2g J, position error %.2g, angle "
+        "error %.2g\n",
+        report.outcome, report.residual, iterations, report.gap, report.hinge, worst, angle);
+    assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+    assert_true(worst < 1e-8);
+    assert_true(report.gap < 1e-12);
+    free(wanted);
+    free(target);
+    free(hinge);
+    clear_panel(&p);
+}
+
+static void every_failed_allocation_is_a_status(void** state) {
+    (void)state;
+    panel p;
+    make_panel(RUGA_FREEDOM_FULL, 3.4, 5000, &p);
+    for (int k = 0;; k++) {
+        let_allocations_fail_after(k);
+        ruga_status status = ruga_creased_create(&p.def, &p.creased);
+        ruga_creased_destroy(&p.creased);
+        ruga_set_allocator(NULL, NULL, NULL);
+        if (status == RUGA_OK) {
+            break;
+        }
+        assert_int_equal(status, RUGA_NO_MEMORY);
+    }
+    clear_panel(&p);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_free_hinge_hangs_straight_down),
+        cmocka_unit_test(a_spring_hinge_balances_the_weight_of_a_stiff_panel),
+        cmocka_unit_test(a_solution_is_kept),
+        cmocka_unit_test(a_kinked_crease_locks_but_for_auxiliary_chords),
+        cmocka_unit_test(miura_folds_from_flat_by_its_rest_angles),
+        cmocka_unit_test(every_failed_allocation_is_a_status),
+    };
+    return cmocka_run_group_tests_name("creased", tests, NULL, check_no_leak);
+}
