@@ -24,7 +24,7 @@ static ruga_status apply_system(const double* x, double* y, void* context) {
 
 static ruga_status apply_preconditioner(const double* x, double* y, void* context) {
     ruga_skin* skin = context;
-    return skin->m ? ruga_factor_solve_absolute(skin->factor, x, y) : ruga_factor_solve(skin->factor, x, y);
+    return ruga_factor_solve_absolute(skin->factor, x, y);
 }
 
 // Newton direction by MINRES; *good = false where the factor no longer serves or the direction does not descend.
