@@ -257,6 +257,99 @@ static void a_kinked_crease_locks_but_for_auxiliary_chords(void** state) {
     clear_panel(&conforming);
 }
 
+// ------------------------------------------------------------------------------- hanging cloth
+
+// Figure 9: a cloth of 1 m and 1 N, 12 x 12 squares, held by two opposite corners that came 12 % together; a
+// crease along the line between them, through the mesh's vertices. From a fold by `angle`.
+static void make_hanging(double stiffness, double angle, panel* p) {
+    *p = (panel){.def = ruga_default_creased_def()};
+    const ruga_raster_def raster = ruga_default_raster_def();
+    make_squares(12, 12, false, &p->c.mesh);
+    for (int i = 0; i < 3 * p->c.mesh.vertex_count; i++) {
+        p->c.mesh.position[i] /= 12;
+    }
+    add_line(&p->c.curves, RUGA_FREEDOM_SINGLE, 0, 0, 1, 1);
+    assert_ok(ruga_raster_create(&p->c.mesh, &p->c.curves, &raster, &p->c.raster));
+    assert_ok(ruga_cut_create(&p->c.raster, &p->c.cut));
+    int nodes = p->c.cut.node_count, segments = p->c.cut.segment_count;
+    p->x = malloc((size_t)nodes * 3 * sizeof *p->x);
+    p->fixed = calloc((size_t)nodes, sizeof *p->fixed);
+    p->stiffness = malloc((size_t)segments * sizeof *p->stiffness);
+    p->rest = calloc((size_t)segments, sizeof *p->rest);
+    for (int s = 0; s < segments; s++) {
+        p->stiffness[s] = stiffness;
+    }
+    for (int k = 0; k < p->c.cut.piece_count; k++) {
+        double middle[3];
+        middle_of(&p->c, &p->c.cut.piece[k], middle);
+        for (int i = 0; i < 3; i++) {
+            int node = p->c.cut.piece[k].node[i];
+            const double* from = p->c.raster.mesh.position + 3 * p->c.cut.source[node];
+            // u along the crease, v across; both sides hang down by the angle, u is drawn together.
+            double u = (from[0] + from[1]) / sqrt(2), v = (from[1] - from[0]) / sqrt(2);
+            double side = middle[1] > middle[0] ? 1 : -1;
+            double w = v * cos(angle), along = sqrt(0.5) + 0.88 * (u - sqrt(0.5));
+            p->x[3 * node] = (along - w) / sqrt(2);
+            p->x[3 * node + 1] = (along + w) / sqrt(2);
+            p->x[3 * node + 2] = -side * v * sin(angle);
+            p->fixed[node] = p->fixed[node] || fabs(u) < 1e-9 || fabs(u - sqrt(2)) < 1e-9;
+        }
+    }
+    p->def.raster = &p->c.raster;
+    p->def.cut = &p->c.cut;
+    p->def.skin =
+        (ruga_skin_def){.thickness = 0.01, .young = 12 * 0.91 * 1e-3 / 1e-6, .poisson = 0.3, .density = 10.2};
+    p->def.stiffness = p->stiffness;
+    p->def.fixed = p->fixed;
+    p->def.gravity[2] = -9.81;
+    p->def.tolerance = 1e-8;
+    p->def.iterations = 1000;
+}
+
+static double corner_distance(const panel* p) {
+    const double* corner[2] = {p->x + 3 * 12, p->x + 3 * (13 * 12)};
+    return ruga_distance(corner[0], corner[1]);
+}
+
+static double energy_of(const ruga_creased_report* r) {
+    return r->membrane + r->bending + r->hinge + r->external;
+}
+
+static void hanging_cloth_is_that_of_a_conforming_mesh(void** state) {
+    (void)state;
+    // A free hinge, and one as stiff as the cloth across it: D l / (A1 + A2) of the conforming mesh.
+    const double length = sqrt(0.5) / 12, area = 0.25 / 144, stiffness[2] = {0, 1e-3 * length / (2 * area)};
+    for (int k = 0; k < 2; k++) {
+        panel p, q;
+        ruga_creased_report report, fine;
+        make_hanging(stiffness[k], 35 * DEGREE, &p);
+        make_conforming(&p, &q);
+        assert_ok(ruga_creased_create(&p.def, &p.creased));
+        assert_ok(ruga_creased_create(&q.def, &q.creased));
+        assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &report));
+        // From the one's solution: there are many equilibria, and other starts lead to others.
+        ruga_cut_material(&p.c.cut, p.x, q.x);
+        assert_ok(ruga_creased_solve(q.creased, q.rest, q.x, &fine));
+        double least = INFINITY, most = 0;
+        for (int s = 0; s < p.c.cut.segment_count; s++) {
+            least = fmin(least, fabs(ruga_creased_angles(p.creased)[s]));
+            most = fmax(most, fabs(ruga_creased_angles(p.creased)[s]));
+        }
+        print_message("k = %.3g N: corners %.4f m, energy %.5f J, outcome %d, %d iterations, kink %.1f to "
+                      "%.1f degrees; "
+                      "conforming %.4f m, %.5f J, outcome %d, %d iterations\n",
+                      stiffness[k], corner_distance(&p), energy_of(&report), report.outcome,
+                      report.iterations, least / DEGREE, most / DEGREE, corner_distance(&q), energy_of(&fine),
+                      fine.outcome, fine.iterations);
+        // Without stiffness both fold over: their corners meet.
+        assert_true(k == 1 || (corner_distance(&p) < 1e-9 && corner_distance(&q) < 1e-9));
+        assert_near(corner_distance(&p), corner_distance(&q), k == 0 ? 1e-9 : 0.02 * corner_distance(&q));
+        assert_near(energy_of(&report), energy_of(&fine), 0.01 * fabs(energy_of(&fine)));
+        clear_panel(&p);
+        clear_panel(&q);
+    }
+}
+
 // ------------------------------------------------------------------------------- Miura-ori
 
 // Sides 1, angle 60 degrees, folded by theta (Schenk and Guest 2013).
@@ -422,6 +515,7 @@ int main(void) {
         cmocka_unit_test(a_spring_hinge_balances_the_weight_of_a_stiff_panel),
         cmocka_unit_test(a_solution_is_kept),
         cmocka_unit_test(a_kinked_crease_locks_but_for_auxiliary_chords),
+        cmocka_unit_test(hanging_cloth_is_that_of_a_conforming_mesh),
         cmocka_unit_test(miura_folds_from_flat_by_its_rest_angles),
         cmocka_unit_test(every_failed_allocation_is_a_status),
     };
