@@ -5,6 +5,7 @@
 #include "tests/scarce_memory.h"
 
 #include "solver/creased.h"
+#include "solver/stitch.h"
 
 static const double DEGREE = RUGA_PI / 180;
 
@@ -160,6 +161,79 @@ static void a_solution_is_kept(void** state) {
     }
     assert_true(report.iterations <= 1);
     free(before);
+    clear_panel(&p);
+}
+
+// Equations 9 and 10 of the paper, a projection after each unconstrained step, leave the equilibrium for a
+// state that is none: the reason why the rows are in the system.
+static void projecting_after_the_step_would_leave_the_solution(void** state) {
+    (void)state;
+    panel p = {.def = ruga_default_creased_def()};
+    const ruga_raster_def raster = ruga_default_raster_def();
+    make_squares(8, 6, true, &p.c.mesh);
+    add_line(&p.c.curves, RUGA_FREEDOM_SINGLE, 1.4, 1.6, 6.6,
+             4.3); // within the sheet, so that nothing comes loose
+    assert_ok(ruga_raster_create(&p.c.mesh, &p.c.curves, &raster, &p.c.raster));
+    assert_ok(ruga_cut_create(&p.c.raster, &p.c.cut));
+    int nodes = p.c.cut.node_count, segments = p.c.cut.segment_count;
+    p.x = malloc((size_t)nodes * 3 * sizeof *p.x);
+    p.fixed = calloc((size_t)nodes, sizeof *p.fixed);
+    p.stiffness = calloc((size_t)segments, sizeof *p.stiffness);
+    p.rest = calloc((size_t)segments, sizeof *p.rest);
+    ruga_cut_rest(&p.c.raster, &p.c.cut, p.x);
+    double* inverse = malloc((size_t)nodes * sizeof *inverse);
+    for (int n = 0; n < nodes; n++) {
+        const double* x = p.x + 3 * n;
+        p.fixed[n] = x[0] < 1e-9 || x[0] > 8 - 1e-9 || x[1] < 1e-9 || x[1] > 6 - 1e-9;
+        inverse[n] = p.fixed[n] ? 0 : 1;
+    }
+    p.def.raster = &p.c.raster;
+    p.def.cut = &p.c.cut;
+    p.def.skin = (ruga_skin_def){.thickness = 0.05, .young = 1e6, .poisson = 0.3, .density = 1000};
+    p.def.stiffness = p.stiffness;
+    p.def.fixed = p.fixed;
+    p.def.gravity[2] = -9.81;
+    ruga_creased_report report;
+    assert_ok(ruga_creased_create(&p.def, &p.creased));
+    assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &report));
+    assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+    // The same energy without rows, one step at a time, with the seams closed in the metric of equal masses.
+    ruga_cut torn = p.c.cut;
+    torn.bound_count = 0;
+    ruga_creased_def def = p.def;
+    def.cut = &torn;
+    def.iterations = 1;
+    ruga_creased* loose;
+    ruga_sewing sewing;
+    ruga_stitch* stitch;
+    assert_ok(ruga_creased_create(&def, &loose));
+    assert_ok(ruga_sewing_create(&p.c.cut, p.fixed, &sewing));
+    assert_ok(ruga_stitch_create(&sewing, inverse, &stitch));
+    double *x = malloc((size_t)nodes * 3 * sizeof *x), *before = malloc((size_t)nodes * 3 * sizeof *before),
+           away = 0, last = 0;
+    memcpy(x, p.x, (size_t)nodes * 3 * sizeof *x);
+    for (int step = 0; step < 60; step++) {
+        ruga_creased_report ignored;
+        memcpy(before, x, (size_t)nodes * 3 * sizeof *x);
+        assert_ok(ruga_creased_solve(loose, p.rest, x, &ignored));
+        for (int i = 0; i < 3 * nodes; i++) {
+            x[i] = 0.7 * before[i] + 0.3 * x[i]; // damped, as it would not settle otherwise
+        }
+        assert_ok(ruga_stitch_close(stitch, x));
+        last = 0;
+        for (int n = 0; n < nodes; n++) {
+            away = fmax(away, ruga_distance(x + 3 * n, p.x + 3 * n));
+            last = fmax(last, ruga_distance(x + 3 * n, before + 3 * n));
+        }
+    }
+    print_message("away from the solution by %.3g m, last step %.2g m\n", away, last);
+    assert_true(away > 1e-3);
+    ruga_stitch_destroy(&stitch);
+    ruga_sewing_clear(&sewing);
+    ruga_creased_destroy(&loose);
+    free(x);
+    free(before);
+    free(inverse);
     clear_panel(&p);
 }
 
@@ -514,6 +588,7 @@ int main(void) {
         cmocka_unit_test(a_free_hinge_hangs_straight_down),
         cmocka_unit_test(a_spring_hinge_balances_the_weight_of_a_stiff_panel),
         cmocka_unit_test(a_solution_is_kept),
+        cmocka_unit_test(projecting_after_the_step_would_leave_the_solution),
         cmocka_unit_test(a_kinked_crease_locks_but_for_auxiliary_chords),
         cmocka_unit_test(hanging_cloth_is_that_of_a_conforming_mesh),
         cmocka_unit_test(miura_folds_from_flat_by_its_rest_angles),
