@@ -623,7 +623,7 @@ static double widest_gap(const ruga_mend* m, int begin, int end, int pair[2]) {
 static ruga_status mend_conflicts(ruga_mend* m) {
     for (int i = 0, end; i < m->hit_count; i = end) {
         end = end_of_key(m->hit, m->hit_count, i);
-        int pair[2];
+        int pair[2] = {i, i};
         double gap = widest_gap(m, i, end, pair);
         if (gap == 0) {
             continue;

@@ -28,8 +28,8 @@ void ruga_sewing_clear(ruga_sewing* sewing);
 void ruga_sewing_matrix(const ruga_sewing* sewing, const double* inverse_mass, double* value);
 // gap [rows][3] = W^T x
 void ruga_sewing_gaps(const ruga_sewing* sewing, const double* x, double* gap);
-// y [nodes][3] += s M^-1 W impulse [rows][3]; inverse_mass NULL = 1 everywhere.
-void ruga_sewing_spread(const ruga_sewing* sewing, const double* inverse_mass, double s,
+// y [nodes][3] += factor M^-1 W impulse [rows][3]; inverse_mass NULL = 1 everywhere.
+void ruga_sewing_spread(const ruga_sewing* sewing, const double* inverse_mass, double factor,
                         const double* impulse, double* y);
 
 // Marks rows of a positive semi-definite matrix that depend on those before them, with an LDL^T factorisation
