@@ -212,7 +212,8 @@ static ruga_status cut_at_vertices(arranger* a) {
         }
         for (int i = first; i < p->vertex_count && sorted[i].x <= high; i++) {
             int v = sorted[i].index;
-            double off, at = v == end[0] || v == end[1] ? 0 : along_edge(p, e, p->position[v], &off);
+            double off = INFINITY,
+                   at = v == end[0] || v == end[1] ? 0 : along_edge(p, e, p->position[v], &off);
             if (at > 0 && at < 1 && off <= a->weld) {
                 RUGA_TRY_DONE(add_cut(a, e, v, at));
                 a->touching++;

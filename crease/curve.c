@@ -32,7 +32,7 @@ int ruga_edge_between(const ruga_connectivity* edges, int a, int b) {
 
 // A new curve with room for its points; vertices are -1. It belongs to `curves` from the start, so that a
 // failure leaks nothing.
-static ruga_status add(ruga_curves* curves, const ruga_curve* style, int count, ruga_curve** added) {
+static ruga_status add(ruga_curves* curves, const ruga_curve* style, int count) {
     if (count < (style->closed ? 3 : 2)) {
         return ruga_fail(RUGA_BAD_INPUT, "crease curve %d has %d points: %s", curves->count, count,
                          style->closed ? "a closed one needs three" : "it needs two");
@@ -50,7 +50,6 @@ static ruga_status add(ruga_curves* curves, const ruga_curve* style, int count, 
     for (int i = 0; i < count; i++) {
         curve->vertex[i] = -1;
     }
-    *added = curve;
 done:
     if (status != RUGA_OK) {
         ruga_release(curve->point);
@@ -67,16 +66,16 @@ ruga_status ruga_curves_add_polyline(ruga_curves* curves, const ruga_curve* styl
             return ruga_fail(RUGA_BAD_INPUT, "point %d of crease curve %d is not finite", i, curves->count);
         }
     }
-    ruga_curve* curve = NULL;
-    RUGA_TRY(add(curves, style, count, &curve));
+    RUGA_TRY(add(curves, style, count));
+    ruga_curve* curve = &curves->curve[curves->count - 1];
     memcpy(curve->point, point, (size_t)count * sizeof *point);
     return RUGA_OK;
 }
 
 static ruga_status add_path(ruga_curves* curves, const ruga_curve* style, const ruga_mesh* mesh, int count,
                             const int* vertex) {
-    ruga_curve* curve = NULL;
-    RUGA_TRY(add(curves, style, count, &curve));
+    RUGA_TRY(add(curves, style, count));
+    ruga_curve* curve = &curves->curve[curves->count - 1];
     for (int i = 0; i < count; i++) {
         curve->vertex[i] = vertex[i];
         memcpy(curve->point[i], mesh->position + 3 * (size_t)vertex[i], sizeof curve->point[i]);

@@ -12,7 +12,7 @@
 //   3  vertices nearer to a curve than `reach` are moved onto it: the cut then goes through them, which gives
 //      the crease freedom, and no embedded node comes so near to a vertex that S is ill-conditioned (its
 //      condition grows as the inverse square of that distance). One that cannot be moved and is nearer than
-//      `merge` is gone through where it is;
+//      TOO_NEAR is gone through where it is;
 //   4  edges with more than one hit are split between two of them.
 // A place becomes a vertex by moving the nearest one there if the triangles around it allow it, else by
 // splitting the edge it is close to, else by splitting the face. All else of curves stays straight between
@@ -27,6 +27,8 @@
 #include <string.h>
 
 static const double SAME_HIT = 1e-7; // of an edge
+static const double TOO_NEAR =
+    1e-3; // edges: a curve this near to a vertex that stays where it is goes through it
 static const double NEAR_EDGE =
     0.3; // of a face's edges: a place this near to an edge splits it, not the face
 
@@ -160,16 +162,24 @@ static double foot_on_edge(const ruga_mend* m, int e, const double x[3], double*
 }
 
 // What is very near to an edge that it cannot split where it is goes onto the edge, rather than leave a
-// sliver. A firm edge (boundary, border of a group) is split on itself only.
-static void slide_to_edge(const ruga_mend* m, int f, double size, double x[3]) {
+// sliver. `firm` edges (boundary, border of a group) are split on themselves only.
+static void slide_to_edge(const ruga_mend* m, int f, double size, bool firm, double x[3]) {
+    int nearest = -1;
+    double least = m->def->merge * size, nearest_place = 0;
     for (int i = 0; i < 3; i++) {
         int e = m->sheet->edges.triangle_edge[f][i];
         double distance, place = foot_on_edge(m, e, x, &distance);
-        bool may_split = !m->sheet->firm[e] && ruga_sheet_can_split(m->sheet, e, x);
-        if (!may_split && distance <= m->def->merge * size) {
-            ruga_hit at = {.vertex = -1, .edge = e, .place = place};
-            ruga_hit_position(m->sheet, &at, x);
+        bool on_it = distance <= SAME_HIT * size;
+        if ((on_it || (m->sheet->firm[e] == firm && (firm || !ruga_sheet_can_split(m->sheet, e, x)))) &&
+            distance <= least) {
+            least = distance;
+            nearest = e;
+            nearest_place = place;
         }
+    }
+    if (nearest >= 0) {
+        ruga_hit at = {.vertex = -1, .edge = nearest, .place = nearest_place};
+        ruga_hit_position(m->sheet, &at, x);
     }
 }
 
@@ -179,7 +189,7 @@ static ruga_status plant(ruga_mend* m, int f, const double where[3], planted* re
     double size = ruga_sheet_face_edge(m->sheet, f), distance[3], weight[3];
     double x[3] = {where[0], where[1], where[2]};
     *result = (planted){-1, -1};
-    slide_to_edge(m, f, size, x);
+    slide_to_edge(m, f, size, true, x);
     int order[3] = {0, 1, 2};
     for (int i = 0; i < 3; i++) {
         distance[i] = ruga_distance(x, corner_position(m, f, i));
@@ -207,6 +217,8 @@ static ruga_status plant(ruga_mend* m, int f, const double where[3], planted* re
             return move_vertex(m, corner[order[i]], face, weight, x, result);
         }
     }
+    slide_to_edge(m, f, size, false, x);
+    face = ruga_sheet_locate(m->sheet, f, x, weight);
     int nearest = -1;
     double least = NEAR_EDGE * size, nearest_place = 0;
     for (int i = 0; i < 3; i++) {
@@ -540,6 +552,9 @@ static ruga_status mend_near_vertex(ruga_mend* m, int p, const ruga_hit* h, int 
         return RUGA_OK;
     }
     ruga_add_scaled(-h->side[end], plane, foot);
+    if (m->sheet->firm[h->edge]) { // along the border, to where the curve leaves it
+        ruga_hit_position(m->sheet, h, foot);
+    }
     ruga_subtract(b->x, a->x, d);
     ruga_subtract(foot, a->x, e);
     double along = ruga_dot(d, e) / ruga_dot(d, d);
@@ -551,7 +566,7 @@ static ruga_status mend_near_vertex(ruga_mend* m, int p, const ruga_hit* h, int 
         int f = ruga_sheet_locate(m->sheet, m->sheet->edges.incident[m->sheet->edges.incident_start[v]], foot,
                                   weight);
         RUGA_TRY(move_vertex(m, v, f, weight, foot, &result));
-    } else if (off < m->def->merge * length) {
+    } else if (off < TOO_NEAR * length) {
         result.vertex = v;
         m->waiting = true;
     }
@@ -608,7 +623,7 @@ static double widest_gap(const ruga_mend* m, int begin, int end, int pair[2]) {
 static ruga_status mend_conflicts(ruga_mend* m) {
     for (int i = 0, end; i < m->hit_count; i = end) {
         end = end_of_key(m->hit, m->hit_count, i);
-        int pair[2];
+        int pair[2] = {i, i};
         double gap = widest_gap(m, i, end, pair);
         if (gap == 0) {
             continue;

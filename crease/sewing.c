@@ -177,18 +177,20 @@ static ruga_status drop_redundant(ruga_sewing* s, const bool* fixed) {
     ruga_status status = RUGA_OK;
     bool* dependent = NULL;
     double* unit = NULL;
+    ruga_seam_factor factor = {0};
     RUGA_TRY_DONE(RUGA_NEW(dependent, s->row_count));
     RUGA_TRY_DONE(RUGA_NEW(unit, s->node_count));
     for (int n = 0; n < s->node_count; n++) {
         unit[n] = fixed && fixed[n] ? 0 : 1;
     }
     ruga_sewing_matrix(s, unit, s->pattern.value);
-    RUGA_TRY_DONE(ruga_find_dependent(&s->pattern, DEPENDENT, dependent));
+    RUGA_TRY_DONE(ruga_seam_factor_create(&s->pattern, DEPENDENT, dependent, &factor));
     keep_rows(s, dependent);
     if (s->redundant_rows > 0) {
         RUGA_TRY_DONE(make_pattern(s, fixed));
     }
 done:
+    ruga_seam_factor_clear(&factor);
     ruga_release(dependent);
     ruga_release(unit);
     return status;
@@ -337,9 +339,11 @@ static int ldl_reach(ldl* f, int k) {
     return top;
 }
 
-ruga_status ruga_find_dependent(const ruga_sparse* lower, double tolerance, bool* dependent) {
+ruga_status ruga_seam_factor_create(const ruga_sparse* lower, double tolerance, bool* dependent,
+                                    ruga_seam_factor* factor) {
     ruga_status status = RUGA_OK;
     ldl f = {.n = lower->columns, .a = lower};
+    *factor = (ruga_seam_factor){0};
     RUGA_TRY_DONE(ldl_allocate(&f));
     ldl_list_rows(&f);
     RUGA_TRY_DONE(ldl_analyse(&f));
@@ -364,7 +368,40 @@ ruga_status ruga_find_dependent(const ruga_sparse* lower, double tolerance, bool
         }
         dependent[k] = !(f.d[k] > tolerance * diagonal);
     }
+    *factor = (ruga_seam_factor){f.n, f.start, f.index, f.value, f.d};
+    f.start = f.index = NULL;
+    f.value = f.d = NULL;
 done:
     ldl_clear(&f);
     return status;
+}
+
+void ruga_seam_factor_clear(ruga_seam_factor* factor) {
+    ruga_release(factor->start);
+    ruga_release(factor->index);
+    ruga_release(factor->value);
+    ruga_release(factor->pivot);
+    *factor = (ruga_seam_factor){0};
+}
+
+void ruga_seam_factor_solve(const ruga_seam_factor* f, double (*b)[3]) {
+    for (int j = 0; j < f->n; j++) {
+        const double x[3] = {b[j][0], b[j][1], b[j][2]};
+        for (int p = f->start[j]; p < f->start[j + 1]; p++) {
+            double *to = b[f->index[p]], l = f->value[p];
+            to[0] -= l * x[0];
+            to[1] -= l * x[1];
+            to[2] -= l * x[2];
+        }
+    }
+    for (int j = f->n - 1; j >= 0; j--) {
+        double d = 1 / f->pivot[j], x[3] = {d * b[j][0], d * b[j][1], d * b[j][2]};
+        for (int p = f->start[j]; p < f->start[j + 1]; p++) {
+            const double *from = b[f->index[p]], l = f->value[p];
+            x[0] -= l * from[0];
+            x[1] -= l * from[1];
+            x[2] -= l * from[2];
+        }
+        memcpy(b[j], x, sizeof x);
+    }
 }

@@ -28,12 +28,22 @@ void ruga_sewing_clear(ruga_sewing* sewing);
 void ruga_sewing_matrix(const ruga_sewing* sewing, const double* inverse_mass, double* value);
 // gap [rows][3] = W^T x
 void ruga_sewing_gaps(const ruga_sewing* sewing, const double* x, double* gap);
-// y [nodes][3] += s M^-1 W impulse [rows][3]; inverse_mass NULL = 1 everywhere.
-void ruga_sewing_spread(const ruga_sewing* sewing, const double* inverse_mass, double s,
+// y [nodes][3] += factor M^-1 W impulse [rows][3]; inverse_mass NULL = 1 everywhere.
+void ruga_sewing_spread(const ruga_sewing* sewing, const double* inverse_mass, double factor,
                         const double* impulse, double* y);
 
-// Marks rows of a positive semi-definite matrix that depend on those before them, with an LDL^T factorisation
-// in the given order: their pivot is at most `tolerance` of the diagonal. dependent [n] is SET.
-ruga_status ruga_find_dependent(const ruga_sparse* lower, double tolerance, bool* dependent);
+// L D L^T of a positive semi-definite matrix, its lower triangle given with values, in the order of its rows.
+// Rows that depend on those before them, whose pivot is at most `tolerance` of the diagonal, are left out:
+// dependent [n] is SET.
+typedef struct ruga_seam_factor {
+    int n;
+    int *start, *index; // of L, by column
+    double *value, *pivot;
+} ruga_seam_factor;
+ruga_status ruga_seam_factor_create(const ruga_sparse* lower, double tolerance, bool* dependent,
+                                    ruga_seam_factor* factor);
+void ruga_seam_factor_clear(ruga_seam_factor* factor);
+// Solves for three right sides at once, b [n][3] becomes x; no row may be dependent.
+void ruga_seam_factor_solve(const ruga_seam_factor* factor, double (*b)[3]);
 
 #endif

@@ -23,16 +23,14 @@
 #include <math.h>
 #include <string.h>
 
-static const double SUFFICIENT = 1e-4;   // Armijo
-static const double SHORTEST = 1e-10;    // part of a step
-static const double ROUND_OFF = 1e-4;    // a residual below this that no longer falls is left
-static const double BLIND = 1e-10;       // of the energies' size
-static const double FIRST_SHIFT = 1e-9;  // of the largest diagonal entry
-static const double LARGEST_SHIFT = 1e3; // the same
-static const double CAP = 0.5;           // mean edges
-static const double FORCE_FLOOR = 1e-8;  // of E h times the mean edge
+static const double SUFFICIENT = 1e-4;  // Armijo
+static const double ROUND_OFF = 1e-4;   // a residual below this that no longer falls is left
+static const double BLIND = 1e-10;      // of the energies' size
+static const double FIRST_SHIFT = 1e-9; // of the largest diagonal entry
+static const double CAP = 0.5;          // mean edges
+static const double FORCE_FLOOR = 1e-8; // of E h times the mean edge
 
-enum { MOST_STALE = 8 };
+enum { MOST_STALE = 8, MOST_HALVINGS = 34, MOST_SHIFTS = 7 };
 
 struct ruga_creased {
     ruga_creased_def def;
@@ -398,7 +396,8 @@ static ruga_status find_factor(ruga_creased* c, const double* x, energies* e, ru
     bool good = false;
     RUGA_TRY(factorise(c, x, 0, 0, e, report, &good));
     *exact = good;
-    for (double shift = FIRST_SHIFT; !good && shift <= LARGEST_SHIFT; shift *= 100) {
+    double shift = FIRST_SHIFT;
+    for (int k = 0; !good && k < MOST_SHIFTS; k++, shift *= 100) {
         RUGA_TRY(factorise(c, x, 1, shift, e, report, &good));
     }
     return good ? RUGA_OK
@@ -438,7 +437,8 @@ static bool search(ruga_creased* c, double* x, const energies* now) {
     double start = longest > CAP * c->edge ? CAP * c->edge / longest : 1;
     // Where the step promises less than energies can tell apart, the Newton step is taken as it is.
     bool blind = fabs(slope) <= BLIND * magnitude;
-    for (double part = start; part > SHORTEST * start; part *= 0.5) {
+    double part = start;
+    for (int k = 0; k < MOST_HALVINGS; k++, part *= 0.5) {
         for (int i = 0; i < 3 * c->nodes; i++) {
             c->trial[i] = x[i] + part * c->step[i];
         }

@@ -15,17 +15,17 @@
 #include "solver/stitch.h"
 
 #include "core/memory.h"
-#include "solver/linear.h"
 
 #include <string.h>
+
+static const double NOT_DEFINITE = 1e-13; // a pivot below this part of the diagonal
 
 struct ruga_stitch {
     const ruga_sewing* sewing;
     double* inverse_mass; // [nodes]
-    ruga_factor* factor;
-    double* gap;    // [rows][3]
-    double* other;  // [rows][3]
-    double* column; // [rows]
+    ruga_seam_factor factor;
+    double (*gap)[3];   // [rows]
+    double (*other)[3]; // [rows]
 };
 
 void ruga_stitch_destroy(ruga_stitch** stitch) {
@@ -33,30 +33,35 @@ void ruga_stitch_destroy(ruga_stitch** stitch) {
         return;
     }
     ruga_release((*stitch)->inverse_mass);
-    ruga_factor_destroy(&(*stitch)->factor);
+    ruga_seam_factor_clear(&(*stitch)->factor);
     ruga_release((*stitch)->gap);
     ruga_release((*stitch)->other);
-    ruga_release((*stitch)->column);
     ruga_release(*stitch);
     *stitch = NULL;
 }
 
 static ruga_status factorise(ruga_stitch* s) {
     const ruga_sparse* pattern = &s->sewing->pattern;
-    ruga_factor_info info;
-    double* value = NULL;
+    ruga_sparse matrix = *pattern;
+    bool* dependent = NULL;
     ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(RUGA_NEW(value, pattern->start[pattern->columns]));
-    ruga_sewing_matrix(s->sewing, s->inverse_mass, value);
-    RUGA_TRY_DONE(ruga_factor_create(RUGA_FACTOR_CHOLESKY, pattern, 0, NULL, NULL, &s->factor));
-    RUGA_TRY_DONE(ruga_factor_numeric(s->factor, value, &info));
-    if (!info.success) {
-        status = ruga_fail(RUGA_BAD_INPUT,
-                           "the seams of the creases hold one another twice: row %d of %d depends on others",
-                           info.positive, s->sewing->row_count);
+    matrix.value = NULL;
+    RUGA_TRY_DONE(RUGA_NEW(matrix.value, pattern->start[pattern->columns]));
+    RUGA_TRY_DONE(RUGA_NEW(dependent, s->sewing->row_count));
+    ruga_sewing_matrix(s->sewing, s->inverse_mass, matrix.value);
+    RUGA_TRY_DONE(ruga_seam_factor_create(&matrix, NOT_DEFINITE, dependent, &s->factor));
+    for (int r = 0; r < s->sewing->row_count; r++) {
+        if (dependent[r]) {
+            status =
+                ruga_fail(RUGA_BAD_INPUT,
+                          "the seams of the creases hold one another twice: row %d of %d depends on others",
+                          r, s->sewing->row_count);
+            goto done;
+        }
     }
 done:
-    ruga_release(value);
+    ruga_release(matrix.value);
+    ruga_release(dependent);
     return status;
 }
 
@@ -68,9 +73,8 @@ ruga_status ruga_stitch_create(const ruga_sewing* sewing, const double* inverse_
     s->sewing = sewing;
     RUGA_TRY_DONE(RUGA_NEW(s->inverse_mass, sewing->node_count));
     memcpy(s->inverse_mass, inverse_mass, (size_t)sewing->node_count * sizeof *inverse_mass);
-    RUGA_TRY_DONE(RUGA_NEW(s->gap, 3 * (size_t)sewing->row_count));
-    RUGA_TRY_DONE(RUGA_NEW(s->other, 3 * (size_t)sewing->row_count));
-    RUGA_TRY_DONE(RUGA_NEW(s->column, sewing->row_count));
+    RUGA_TRY_DONE(RUGA_NEW(s->gap, sewing->row_count));
+    RUGA_TRY_DONE(RUGA_NEW(s->other, sewing->row_count));
     if (sewing->row_count > 0) {
         RUGA_TRY_DONE(factorise(s));
     }
@@ -84,35 +88,26 @@ done:
 
 // y -= M^-1 W S^-1 gap
 static ruga_status project(ruga_stitch* s, double* y) {
-    int rows = s->sewing->row_count;
-    for (int axis = 0; axis < 3 && rows > 0; axis++) {
-        for (int r = 0; r < rows; r++) {
-            s->column[r] = s->gap[3 * (size_t)r + (size_t)axis];
-        }
-        RUGA_TRY(ruga_factor_solve(s->factor, s->column, s->column));
-        for (int r = 0; r < rows; r++) {
-            s->gap[3 * (size_t)r + (size_t)axis] = s->column[r];
-        }
-    }
-    ruga_sewing_spread(s->sewing, s->inverse_mass, -1, s->gap, y);
+    ruga_seam_factor_solve(&s->factor, s->gap);
+    ruga_sewing_spread(s->sewing, s->inverse_mass, -1, &s->gap[0][0], y);
     return RUGA_OK;
 }
 
 ruga_status ruga_stitch_before(ruga_stitch* s, const double* x, double step, double* v) {
-    ruga_sewing_gaps(s->sewing, v, s->gap);
-    ruga_sewing_gaps(s->sewing, x, s->other);
+    ruga_sewing_gaps(s->sewing, v, &s->gap[0][0]);
+    ruga_sewing_gaps(s->sewing, x, &s->other[0][0]);
     for (int k = 0; k < 3 * s->sewing->row_count; k++) {
-        s->gap[k] += s->other[k] / step;
+        s->gap[k / 3][k % 3] += s->other[k / 3][k % 3] / step;
     }
     return project(s, v);
 }
 
 ruga_status ruga_stitch_after(ruga_stitch* s, double* v) {
-    ruga_sewing_gaps(s->sewing, v, s->gap);
+    ruga_sewing_gaps(s->sewing, v, &s->gap[0][0]);
     return project(s, v);
 }
 
 ruga_status ruga_stitch_close(ruga_stitch* s, double* x) {
-    ruga_sewing_gaps(s->sewing, x, s->gap);
+    ruga_sewing_gaps(s->sewing, x, &s->gap[0][0]);
     return project(s, x);
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
-#include "tests/crease_case.h"
+#include "tests/miura.h"
 #include "tests/scarce_memory.h"
 
 #include "solver/creased.h"
-
-static const double DEGREE = RUGA_PI / 180;
+#include "solver/stitch.h"
 
 typedef struct panel {
     crease_case c;
@@ -15,16 +14,6 @@ typedef struct panel {
     ruga_creased_def def;
     ruga_creased* creased;
 } panel;
-
-// Mean of a piece's corners.
-static void middle_of(const crease_case* c, const ruga_cut_piece* piece, double middle[3]) {
-    double x[RUGA_BORDER_PLACES][3];
-    ruga_raster_places(&c->raster, piece->triangle, x);
-    memset(middle, 0, 3 * sizeof *middle);
-    for (int k = 0; k < piece->polygon.count; k++) {
-        ruga_add_scaled(1.0 / piece->polygon.count, x[piece->polygon.place[k]], middle);
-    }
-}
 
 // Turns all nodes of pieces with x > line up by `angle` about the line x = `line`, z = 0.
 static void fold(panel* p, double line, double angle) {
@@ -163,6 +152,79 @@ static void a_solution_is_kept(void** state) {
     clear_panel(&p);
 }
 
+// Equations 9 and 10 of the paper, a projection after each unconstrained step, leave the equilibrium for a
+// state that is none: the reason why the rows are in the system.
+static void projecting_after_the_step_would_leave_the_solution(void** state) {
+    (void)state;
+    panel p = {.def = ruga_default_creased_def()};
+    const ruga_raster_def raster = ruga_default_raster_def();
+    make_squares(8, 6, true, &p.c.mesh);
+    add_line(&p.c.curves, RUGA_FREEDOM_SINGLE, 1.4, 1.6, 6.6,
+             4.3); // within the sheet, so that nothing comes loose
+    assert_ok(ruga_raster_create(&p.c.mesh, &p.c.curves, &raster, &p.c.raster));
+    assert_ok(ruga_cut_create(&p.c.raster, &p.c.cut));
+    int nodes = p.c.cut.node_count, segments = p.c.cut.segment_count;
+    p.x = malloc((size_t)nodes * 3 * sizeof *p.x);
+    p.fixed = calloc((size_t)nodes, sizeof *p.fixed);
+    p.stiffness = calloc((size_t)segments, sizeof *p.stiffness);
+    p.rest = calloc((size_t)segments, sizeof *p.rest);
+    ruga_cut_rest(&p.c.raster, &p.c.cut, p.x);
+    double* inverse = malloc((size_t)nodes * sizeof *inverse);
+    for (int n = 0; n < nodes; n++) {
+        const double* x = p.x + 3 * n;
+        p.fixed[n] = x[0] < 1e-9 || x[0] > 8 - 1e-9 || x[1] < 1e-9 || x[1] > 6 - 1e-9;
+        inverse[n] = p.fixed[n] ? 0 : 1;
+    }
+    p.def.raster = &p.c.raster;
+    p.def.cut = &p.c.cut;
+    p.def.skin = (ruga_skin_def){.thickness = 0.05, .young = 1e6, .poisson = 0.3, .density = 1000};
+    p.def.stiffness = p.stiffness;
+    p.def.fixed = p.fixed;
+    p.def.gravity[2] = -9.81;
+    ruga_creased_report report;
+    assert_ok(ruga_creased_create(&p.def, &p.creased));
+    assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &report));
+    assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+    // The same energy without rows, one step at a time, with the seams closed in the metric of equal masses.
+    ruga_cut torn = p.c.cut;
+    torn.bound_count = 0;
+    ruga_creased_def def = p.def;
+    def.cut = &torn;
+    def.iterations = 1;
+    ruga_creased* loose;
+    ruga_sewing sewing;
+    ruga_stitch* stitch;
+    assert_ok(ruga_creased_create(&def, &loose));
+    assert_ok(ruga_sewing_create(&p.c.cut, p.fixed, &sewing));
+    assert_ok(ruga_stitch_create(&sewing, inverse, &stitch));
+    double *x = malloc((size_t)nodes * 3 * sizeof *x), *before = malloc((size_t)nodes * 3 * sizeof *before),
+           away = 0, last = 0;
+    memcpy(x, p.x, (size_t)nodes * 3 * sizeof *x);
+    for (int step = 0; step < 60; step++) {
+        ruga_creased_report ignored;
+        memcpy(before, x, (size_t)nodes * 3 * sizeof *x);
+        assert_ok(ruga_creased_solve(loose, p.rest, x, &ignored));
+        for (int i = 0; i < 3 * nodes; i++) {
+            x[i] = 0.7 * before[i] + 0.3 * x[i]; // damped, as it would not settle otherwise
+        }
+        assert_ok(ruga_stitch_close(stitch, x));
+        last = 0;
+        for (int n = 0; n < nodes; n++) {
+            away = fmax(away, ruga_distance(x + 3 * n, p.x + 3 * n));
+            last = fmax(last, ruga_distance(x + 3 * n, before + 3 * n));
+        }
+    }
+    print_message("away from the solution by %.3g m, last step %.2g m\n", away, last);
+    assert_true(away > 1e-3);
+    ruga_stitch_destroy(&stitch);
+    ruga_sewing_clear(&sewing);
+    ruga_creased_destroy(&loose);
+    free(x);
+    free(before);
+    free(inverse);
+    clear_panel(&p);
+}
+
 // The mesh that conforms to the cut of `p`: its material, with the creases along mesh edges, in the same
 // state.
 static void make_conforming(const panel* p, panel* q) {
@@ -257,75 +319,108 @@ static void a_kinked_crease_locks_but_for_auxiliary_chords(void** state) {
     clear_panel(&conforming);
 }
 
+// ------------------------------------------------------------------------------- hanging cloth
+
+// Figure 9: a cloth of 1 m and 1 N, 12 x 12 squares, held by two opposite corners that came 12 % together; a
+// crease along the line between them, through the mesh's vertices. From a fold by `angle`.
+static void make_hanging(double stiffness, double angle, panel* p) {
+    *p = (panel){.def = ruga_default_creased_def()};
+    const ruga_raster_def raster = ruga_default_raster_def();
+    make_squares(12, 12, false, &p->c.mesh);
+    for (int i = 0; i < 3 * p->c.mesh.vertex_count; i++) {
+        p->c.mesh.position[i] /= 12;
+    }
+    add_line(&p->c.curves, RUGA_FREEDOM_SINGLE, 0, 0, 1, 1);
+    assert_ok(ruga_raster_create(&p->c.mesh, &p->c.curves, &raster, &p->c.raster));
+    assert_ok(ruga_cut_create(&p->c.raster, &p->c.cut));
+    int nodes = p->c.cut.node_count, segments = p->c.cut.segment_count;
+    p->x = malloc((size_t)nodes * 3 * sizeof *p->x);
+    p->fixed = calloc((size_t)nodes, sizeof *p->fixed);
+    p->stiffness = malloc((size_t)segments * sizeof *p->stiffness);
+    p->rest = calloc((size_t)segments, sizeof *p->rest);
+    for (int s = 0; s < segments; s++) {
+        p->stiffness[s] = stiffness;
+    }
+    for (int k = 0; k < p->c.cut.piece_count; k++) {
+        double middle[3];
+        middle_of(&p->c, &p->c.cut.piece[k], middle);
+        for (int i = 0; i < 3; i++) {
+            int node = p->c.cut.piece[k].node[i];
+            const double* from = p->c.raster.mesh.position + 3 * p->c.cut.source[node];
+            // u along the crease, v across; both sides hang down by the angle, u is drawn together.
+            double u = (from[0] + from[1]) / sqrt(2), v = (from[1] - from[0]) / sqrt(2);
+            double side = middle[1] > middle[0] ? 1 : -1;
+            double w = v * cos(angle), along = sqrt(0.5) + 0.88 * (u - sqrt(0.5));
+            p->x[3 * node] = (along - w) / sqrt(2);
+            p->x[3 * node + 1] = (along + w) / sqrt(2);
+            p->x[3 * node + 2] = -side * v * sin(angle);
+            p->fixed[node] = p->fixed[node] || fabs(u) < 1e-9 || fabs(u - sqrt(2)) < 1e-9;
+        }
+    }
+    p->def.raster = &p->c.raster;
+    p->def.cut = &p->c.cut;
+    p->def.skin =
+        (ruga_skin_def){.thickness = 0.01, .young = 12 * 0.91 * 1e-3 / 1e-6, .poisson = 0.3, .density = 10.2};
+    p->def.stiffness = p->stiffness;
+    p->def.fixed = p->fixed;
+    p->def.gravity[2] = -9.81;
+    p->def.tolerance = 1e-8;
+    p->def.iterations = 1000;
+}
+
+static double corner_distance(const panel* p) {
+    const double* corner[2] = {p->x + 3 * 12, p->x + 3 * (13 * 12)};
+    return ruga_distance(corner[0], corner[1]);
+}
+
+static double energy_of(const ruga_creased_report* r) {
+    return r->membrane + r->bending + r->hinge + r->external;
+}
+
+static void hanging_cloth_is_that_of_a_conforming_mesh(void** state) {
+    (void)state;
+    // A free hinge, and one as stiff as the cloth across it: D l / (A1 + A2) of the conforming mesh.
+    const double length = sqrt(0.5) / 12, area = 0.25 / 144, stiffness[2] = {0, 1e-3 * length / (2 * area)};
+    for (int k = 0; k < 2; k++) {
+        panel p, q;
+        ruga_creased_report report, fine;
+        make_hanging(stiffness[k], 35 * DEGREE, &p);
+        make_conforming(&p, &q);
+        assert_ok(ruga_creased_create(&p.def, &p.creased));
+        assert_ok(ruga_creased_create(&q.def, &q.creased));
+        assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &report));
+        // From the one's solution: there are many equilibria, and other starts lead to others.
+        ruga_cut_material(&p.c.cut, p.x, q.x);
+        assert_ok(ruga_creased_solve(q.creased, q.rest, q.x, &fine));
+        double least = INFINITY, most = 0;
+        for (int s = 0; s < p.c.cut.segment_count; s++) {
+            least = fmin(least, fabs(ruga_creased_angles(p.creased)[s]));
+            most = fmax(most, fabs(ruga_creased_angles(p.creased)[s]));
+        }
+        print_message("k = %.3g N: corners %.4f m, energy %.5f J, outcome %d, %d iterations, kink %.1f to "
+                      "%.1f degrees; "
+                      "conforming %.4f m, %.5f J, outcome %d, %d iterations\n",
+                      stiffness[k], corner_distance(&p), energy_of(&report), report.outcome,
+                      report.iterations, least / DEGREE, most / DEGREE, corner_distance(&q), energy_of(&fine),
+                      fine.outcome, fine.iterations);
+        // Without stiffness both fold over: their corners meet.
+        assert_true(k == 1 || (corner_distance(&p) < 1e-9 && corner_distance(&q) < 1e-9));
+        assert_near(corner_distance(&p), corner_distance(&q), k == 0 ? 1e-9 : 0.02 * corner_distance(&q));
+        assert_near(energy_of(&report), energy_of(&fine), 0.01 * fabs(energy_of(&fine)));
+        clear_panel(&p);
+        clear_panel(&q);
+    }
+}
+
 // ------------------------------------------------------------------------------- Miura-ori
-
-// Sides 1, angle 60 degrees, folded by theta (Schenk and Guest 2013).
-static void miura_vertex(int i, int j, double theta, double x[3]) {
-    double t = tan(60 * DEGREE), c = cos(theta), q = sqrt(1 + c * c * t * t);
-    x[0] = i * c * t / q;
-    x[1] = j * sqrt(1 - pow(sin(theta) * sin(60 * DEGREE), 2)) + (abs(i) % 2) / q;
-    x[2] = abs(j) % 2 * sin(theta) * sin(60 * DEGREE);
-}
-
-// The panel that holds a flat point, and where it takes x.
-static void find_panel(const double middle[3], int panel[2]) {
-    double side = sin(60 * DEGREE);
-    panel[0] = (int)floor(middle[0] / side);
-    double part = middle[0] / side - panel[0], zig = 0.5 * (abs(panel[0]) % 2 ? 1 - part : part);
-    panel[1] = (int)floor(middle[1] - zig);
-}
-
-static void fold_point(const int panel[2], double theta, const double x[3], double y[3]) {
-    double flat[3][3], folded[3][3];
-    for (int k = 0; k < 3; k++) {
-        miura_vertex(panel[0] + (k == 1), panel[1] + (k == 2), 0, flat[k]);
-        miura_vertex(panel[0] + (k == 1), panel[1] + (k == 2), theta, folded[k]);
-    }
-    double u = (x[0] - flat[0][0]) / (flat[1][0] - flat[0][0]);
-    double v = x[1] - flat[0][1] - u * (flat[1][1] - flat[0][1]);
-    for (int k = 0; k < 3; k++) {
-        y[k] = folded[0][k] + u * (folded[1][k] - folded[0][k]) + v * (folded[2][k] - folded[0][k]);
-    }
-}
-
-// The frame of a panel at theta: origin and three directions.
-static void panel_frame(const int panel[2], double theta, double frame[4][3]) {
-    double a[3], b[3];
-    miura_vertex(panel[0], panel[1], theta, frame[0]);
-    miura_vertex(panel[0], panel[1] + 1, theta, a);
-    miura_vertex(panel[0] + 1, panel[1], theta, b);
-    ruga_subtract(a, frame[0], frame[1]);
-    ruga_subtract(b, frame[0], b);
-    ruga_cross(b, frame[1], frame[3]);
-    ruga_normalize(frame[3]);
-    ruga_normalize(frame[1]);
-    ruga_cross(frame[1], frame[3], frame[2]);
-}
 
 static void miura_folds_from_flat_by_its_rest_angles(void** state) {
     (void)state;
-    const double theta = 50 * DEGREE, side = sin(60 * DEGREE);
-    const double low[2] = {-0.6 * side, -0.47}, high[2] = {3.55 * side, 3.93};
-    const int n = 12, held[2] = {1, 1};
+    const double theta = 50 * DEGREE;
+    const int held[2] = {1, 1};
     panel p = {.def = ruga_default_creased_def()};
     const ruga_raster_def raster = ruga_default_raster_def();
-    make_squares(n, n, true, &p.c.mesh);
-    for (int v = 0; v < p.c.mesh.vertex_count; v++) {
-        for (int i = 0; i < 2; i++) {
-            p.c.mesh.position[3 * v + i] = low[i] + (high[i] - low[i]) * p.c.mesh.position[3 * v + i] / n;
-        }
-    }
-    for (int i = 0; i < 4; i++) {
-        add_line(&p.c.curves, RUGA_FREEDOM_SINGLE, i * side, -2, i * side, 6);
-    }
-    for (int j = 0; j < 4; j++) {
-        double point[6][3];
-        for (int i = -1; i < 5; i++) {
-            miura_vertex(i, j, 0, point[i + 1]);
-        }
-        const ruga_curve style = {.freedom = RUGA_FREEDOM_SINGLE};
-        assert_ok(ruga_curves_add_polyline(&p.c.curves, &style, 6, (const double(*)[3])point));
-    }
+    miura_make(12, &p.c);
     assert_ok(ruga_raster_create(&p.c.mesh, &p.c.curves, &raster, &p.c.raster));
     assert_ok(ruga_cut_create(&p.c.raster, &p.c.cut));
     int nodes = p.c.cut.node_count, segments = p.c.cut.segment_count;
@@ -337,17 +432,17 @@ static void miura_folds_from_flat_by_its_rest_angles(void** state) {
     double *wanted = malloc((size_t)nodes * 3 * sizeof *wanted),
            *target = malloc((size_t)segments * sizeof *target);
     double from[4][3], to[4][3];
-    panel_frame(held, theta, from);
-    panel_frame(held, 0, to);
+    miura_panel_frame(held, theta, from);
+    miura_panel_frame(held, 0, to);
     for (int k = 0; k < p.c.cut.piece_count; k++) {
         int own[2];
         double middle[3];
         middle_of(&p.c, &p.c.cut.piece[k], middle);
-        find_panel(middle, own);
+        miura_find_panel(middle, own);
         for (int i = 0; i < 3; i++) {
             int m = p.c.cut.piece[k].node[i];
             double y[3], d[3];
-            fold_point(own, theta, p.c.raster.mesh.position + 3 * p.c.cut.source[m], y);
+            miura_fold_point(own, theta, p.c.raster.mesh.position + 3 * p.c.cut.source[m], y);
             ruga_subtract(y, from[0], d);
             memcpy(wanted + 3 * m, to[0], 3 * sizeof *wanted);
             for (int a = 1; a < 4; a++) {
@@ -399,6 +494,100 @@ static void miura_folds_from_flat_by_its_rest_angles(void** state) {
     clear_panel(&p);
 }
 
+static int vertex_at(const crease_case* c, int i, int j) {
+    double x[3], nearest = INFINITY;
+    int best = -1;
+    miura_vertex(i, j, 0, x);
+    for (int v = 0; v < c->raster.mesh.vertex_count; v++) {
+        double d = ruga_distance(x, c->raster.mesh.position + 3 * v);
+        best = d < nearest ? v : best;
+        nearest = fmin(d, nearest);
+    }
+    assert_near(nearest, 0, 1e-14);
+    return best;
+}
+
+// L and S of half a cell in closed form, by the corners that are two cells apart.
+static void miura_cell(double theta, double* l, double* s) {
+    double a[3], b[3], d[3];
+    miura_vertex(0, 0, theta, a);
+    miura_vertex(0, 2, theta, b);
+    miura_vertex(2, 0, theta, d);
+    *l = ruga_distance(a, b) / 2;
+    *s = ruga_distance(a, d) / 2;
+}
+
+// Two corners are brought together along L; free hinges. S follows, and with it the Poisson ratio.
+static void miura_narrows_as_it_is_compressed(void** state) {
+    (void)state;
+    panel p = {.def = ruga_default_creased_def()};
+    const ruga_raster_def raster = ruga_default_raster_def();
+    miura_make(10, &p.c);
+    assert_ok(ruga_raster_create(&p.c.mesh, &p.c.curves, &raster, &p.c.raster));
+    assert_ok(ruga_cut_create(&p.c.raster, &p.c.cut));
+    int nodes = p.c.cut.node_count, a = vertex_at(&p.c, 1, 1), b = vertex_at(&p.c, 1, 3),
+        d = vertex_at(&p.c, 3, 1);
+    p.x = malloc((size_t)nodes * 3 * sizeof *p.x);
+    p.fixed = calloc((size_t)nodes, sizeof *p.fixed);
+    p.stiffness = calloc((size_t)p.c.cut.segment_count, sizeof *p.stiffness);
+    p.rest = calloc((size_t)p.c.cut.segment_count, sizeof *p.rest);
+    p.fixed[a] = p.fixed[b] = true;
+    double* inverse = malloc((size_t)nodes * sizeof *inverse);
+    for (int n = 0; n < nodes; n++) {
+        inverse[n] = p.fixed[n] ? 0 : 1;
+    }
+    for (int k = 0; k < p.c.cut.piece_count; k++) {
+        int own[2];
+        double middle[3];
+        middle_of(&p.c, &p.c.cut.piece[k], middle);
+        miura_find_panel(middle, own);
+        for (int i = 0; i < 3; i++) {
+            int n = p.c.cut.piece[k].node[i];
+            miura_fold_point(own, 30 * DEGREE, p.c.raster.mesh.position + 3 * p.c.cut.source[n], p.x + 3 * n);
+        }
+    }
+    p.def.raster = &p.c.raster;
+    p.def.cut = &p.c.cut;
+    p.def.stiffness = p.stiffness;
+    p.def.fixed = p.fixed;
+    p.def.skin = (ruga_skin_def){.thickness = 0.02, .young = 1e9, .poisson = 0.3, .density = 1};
+    p.def.tolerance = 1e-6; // of 1e-8 E h: it is a mechanism, no forces are left
+    ruga_sewing sewing;
+    ruga_stitch* stitch;
+    assert_ok(ruga_sewing_create(&p.c.cut, p.fixed, &sewing));
+    assert_ok(ruga_stitch_create(&sewing, inverse, &stitch));
+    assert_ok(ruga_creased_create(&p.def, &p.creased));
+    double worst = 0, before[2] = {0, 0}, known[2] = {0, 0}, worst_ratio = 0;
+    for (int degrees = 30; degrees <= 45; degrees++) {
+        double l, s, along[3];
+        ruga_creased_report report;
+        miura_cell(degrees * DEGREE, &l, &s);
+        ruga_subtract(p.x + 3 * b, p.x + 3 * a, along);
+        ruga_normalize(along);
+        memcpy(p.x + 3 * b, p.x + 3 * a, 3 * sizeof *p.x);
+        ruga_add_scaled(2 * l, along, p.x + 3 * b);
+        assert_ok(ruga_stitch_close(stitch, p.x));
+        assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &report));
+        double measured = ruga_distance(p.x + 3 * a, p.x + 3 * d) / 2;
+        worst = fmax(worst, fabs(measured - s));
+        if (degrees > 30) { // (dS/S) / (dL/L), of which the Poisson ratio is minus the inverse
+            double ratio = log(measured / before[0]) / log(l / before[1]),
+                   exact = log(s / known[0]) / log(l / known[1]);
+            worst_ratio = fmax(worst_ratio, fabs(ratio / exact - 1));
+        }
+        before[0] = measured;
+        known[0] = s;
+        before[1] = known[1] = l;
+    }
+    print_message("S(L) from 30 to 45 degrees: error %.2g of a side, slopes %.2g\n", worst, worst_ratio);
+    assert_true(worst < 1e-6);
+    assert_true(worst_ratio < 1e-4);
+    ruga_stitch_destroy(&stitch);
+    ruga_sewing_clear(&sewing);
+    free(inverse);
+    clear_panel(&p);
+}
+
 static void every_failed_allocation_is_a_status(void** state) {
     (void)state;
     panel p;
@@ -421,8 +610,11 @@ int main(void) {
         cmocka_unit_test(a_free_hinge_hangs_straight_down),
         cmocka_unit_test(a_spring_hinge_balances_the_weight_of_a_stiff_panel),
         cmocka_unit_test(a_solution_is_kept),
+        cmocka_unit_test(projecting_after_the_step_would_leave_the_solution),
         cmocka_unit_test(a_kinked_crease_locks_but_for_auxiliary_chords),
+        cmocka_unit_test(hanging_cloth_is_that_of_a_conforming_mesh),
         cmocka_unit_test(miura_folds_from_flat_by_its_rest_angles),
+        cmocka_unit_test(miura_narrows_as_it_is_compressed),
         cmocka_unit_test(every_failed_allocation_is_a_status),
     };
     return cmocka_run_group_tests_name("creased", tests, NULL, check_no_leak);
