@@ -32,12 +32,9 @@ static void fold(panel* p, double line, double angle) {
     }
 }
 
-// 8 x 4 squares of 1 m, a crease across at x = `line`; all copies left of it held. Gravity -z.
-static void make_panel(ruga_crease_freedom freedom, double line, double stiffness, panel* p) {
-    *p = (panel){.def = ruga_default_creased_def()};
+// Cuts the mesh of p along its curves; all hinges of one stiffness and flat at rest, nothing held.
+static void cut_panel(double stiffness, panel* p) {
     const ruga_raster_def raster = ruga_default_raster_def();
-    make_squares(8, 4, true, &p->c.mesh);
-    add_line(&p->c.curves, freedom, line, -1, line, 5);
     assert_ok(ruga_raster_create(&p->c.mesh, &p->c.curves, &raster, &p->c.raster));
     assert_ok(ruga_cut_create(&p->c.raster, &p->c.cut));
     int nodes = p->c.cut.node_count, segments = p->c.cut.segment_count;
@@ -48,6 +45,14 @@ static void make_panel(ruga_crease_freedom freedom, double line, double stiffnes
     for (int s = 0; s < segments; s++) {
         p->stiffness[s] = stiffness;
     }
+}
+
+// 8 x 4 squares of 1 m, a crease across at x = `line`; all copies left of it held. Gravity -z.
+static void make_panel(ruga_crease_freedom freedom, double line, double stiffness, panel* p) {
+    *p = (panel){.def = ruga_default_creased_def()};
+    make_squares(8, 4, true, &p->c.mesh);
+    add_line(&p->c.curves, freedom, line, -1, line, 5);
+    cut_panel(stiffness, p);
     for (int k = 0; k < p->c.cut.piece_count; k++) {
         double middle[3];
         middle_of(&p->c, &p->c.cut.piece[k], middle);
@@ -325,22 +330,12 @@ static void a_kinked_crease_locks_but_for_auxiliary_chords(void** state) {
 // crease along the line between them, through the mesh's vertices. From a fold by `angle`.
 static void make_hanging(double stiffness, double angle, panel* p) {
     *p = (panel){.def = ruga_default_creased_def()};
-    const ruga_raster_def raster = ruga_default_raster_def();
     make_squares(12, 12, false, &p->c.mesh);
     for (int i = 0; i < 3 * p->c.mesh.vertex_count; i++) {
         p->c.mesh.position[i] /= 12;
     }
     add_line(&p->c.curves, RUGA_FREEDOM_SINGLE, 0, 0, 1, 1);
-    assert_ok(ruga_raster_create(&p->c.mesh, &p->c.curves, &raster, &p->c.raster));
-    assert_ok(ruga_cut_create(&p->c.raster, &p->c.cut));
-    int nodes = p->c.cut.node_count, segments = p->c.cut.segment_count;
-    p->x = malloc((size_t)nodes * 3 * sizeof *p->x);
-    p->fixed = calloc((size_t)nodes, sizeof *p->fixed);
-    p->stiffness = malloc((size_t)segments * sizeof *p->stiffness);
-    p->rest = calloc((size_t)segments, sizeof *p->rest);
-    for (int s = 0; s < segments; s++) {
-        p->stiffness[s] = stiffness;
-    }
+    cut_panel(stiffness, p);
     for (int k = 0; k < p->c.cut.piece_count; k++) {
         double middle[3];
         middle_of(&p->c, &p->c.cut.piece[k], middle);
