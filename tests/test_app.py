@@ -305,7 +305,7 @@ class Runs(Case):
         self.refused("export", "a.h5", "--format", "obj", "--frames", "0:3", "-o", "one.obj", saying="%04d")
         self.refused("export", "a.h5", "--format", "obj", "--frames", "3:11", "-o", "a%d.obj", saying="0:10")
         self.refused("export", "a.h5", "--format", "obj", "--frames", "4:3", "-o", "a%d.obj", saying="range")
-        self.refused("export", "a.h5", "--format", "gltf", "-o", "a.glb", saying="not available")
+        self.refused("export", "a.h5", "--format", "fold", "-o", "a.fold", saying="not available")
         self.refused("export", "a.h5", "--unit", "kg", "-o", "a.obj", saying="--unit")
 
     def test_existing_results_and_resume(self):

@@ -1,0 +1,417 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The Ruga authors
+#
+# What ruga export writes, read by parsers of our own and, where they are installed, by other programs: Blender, the
+# Khronos validator (npm), ParaView or XDMF's own library. test_export.py RUGA BUILD_DIR SOURCE_DIR [unittest arguments].
+import json
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as xml
+
+try:
+    import h5py
+    import numpy as np
+except ImportError:
+    print("skipped: python3-h5py is not installed")
+    sys.exit(77)
+
+RUGA, BUILD, SOURCE = (os.path.abspath(path) for path in sys.argv[1:4])
+FRAMES = 4
+SCENE = """\
+mesh:       {file: sheet.obj, unit: cm}
+skin:       {thickness: 2 mm, young: 40 MPa}
+interior:   {young: 0.5 MPa, motion: prescribed}
+lattice:    {fill: box}
+prescribed: [{time: 0 s}, {time: 60 ms, stretch: [0.95, 1, 1]}]
+time:       {step: 20 ms, frames: 3}
+"""
+
+
+def run(*words, cwd, status=0, timeout=300):
+    done = subprocess.run([str(word) for word in words], cwd=cwd, capture_output=True, text=True, timeout=timeout)
+    if status is not None and done.returncode != status:
+        raise AssertionError(f"{words} ended with {done.returncode}: {done.stdout[-2000:]}{done.stderr[-2000:]}")
+    return done
+
+
+def write_sheet(folder):
+    """A sheet in cm with two groups, one of an odd name, and uvs with a seam between them."""
+    run(RUGA, "make", "sheet", "--size", "14cm,4cm", "--edge", "4.2mm", "-o", "plain.ply", cwd=folder)
+    run(RUGA, "make", "sheet", "--size", "14cm,4cm", "--edge", "4.2mm", "-o", "plain.obj", cwd=folder)
+    with open(os.path.join(folder, "plain.obj")) as file:
+        lines = file.read().split("\n")
+    v = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
+    f = np.array([[w.split("/")[0] for w in line.split()[1:]] for line in lines if line.startswith("f ")], int) - 1
+    side = v[f].mean(axis=1)[:, 0] > 0
+    with open(os.path.join(folder, "sheet.obj"), "w") as file:
+        for p in v:
+            file.write("v %.17g %.17g %.17g\n" % tuple(100 * p))
+        for shift in (0, 0.5):
+            for p in v:
+                file.write("vt %.17g %.17g\n" % (0.25 + shift + 1.5 * p[0], 0.5 + 10 * p[1]))
+        for s, name in ((False, "left side"), (True, "2-nd \"side\"")):
+            file.write(f"g {name}\n")
+            for t in f[side == s]:
+                file.write("f " + " ".join(f"{i + 1}/{i + 1 + s * len(v)}" for i in t) + "\n")
+
+
+class Case(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="ruga-export-")
+        write_sheet(cls.folder)
+        with open(os.path.join(cls.folder, "s.yaml"), "w") as file:
+            file.write(SCENE)
+        run(RUGA, "run", "s.yaml", "-o", "s.h5", "--quiet", cwd=cls.folder, status=None)
+        with h5py.File(os.path.join(cls.folder, "s.h5")) as file:
+            cls.position = file["shell/position"][()]
+            cls.triangle = file["mesh/triangles"][()]
+            cls.uv, cls.uv_triangle = file["mesh/uv"][()], file["mesh/uv_triangles"][()]
+            cls.group = file["mesh/face_group"][()]
+            cls.names = [n.decode() if isinstance(n, bytes) else n for n in file["mesh/group_names"][()]]
+            cls.time = file["frames/time"][()]
+        assert cls.position.shape[0] == FRAMES
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    def export(self, name, *words, status=0):
+        return run(RUGA, "export", "s.h5", *words, "-o", name, cwd=self.folder, status=status)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def bytes(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+
+# ---- our own parsers ---------------------------------------------------------------------------------------
+
+class Glb:
+    """A binary glTF with everything that the specification demands of what is in it checked."""
+    WIDTH = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+    TYPE = {5125: "<u4", 5126: "<f4"}
+
+    def __init__(self, data):
+        magic, version, length = struct.unpack_from("<4sII", data)
+        assert (magic, version, length) == (b"glTF", 2, len(data))
+        size, kind = struct.unpack_from("<I4s", data, 12)
+        assert kind == b"JSON" and size % 4 == 0
+        self.root = json.loads(data[20:20 + size])
+        binary, kind = struct.unpack_from("<I4s", data, 20 + size)
+        assert kind == b"BIN\0" and 28 + size + binary == length and binary % 4 == 0
+        assert self.root["buffers"] == [{"byteLength": binary}]
+        self.data = data[28 + size:]
+        end = 0
+        for view in self.root["bufferViews"]:
+            assert view["byteOffset"] == end and view["byteLength"] > 0
+            end += view["byteLength"]
+        assert end == binary
+
+    def view(self, number, dtype, width, count, offset=0):
+        view = self.root["bufferViews"][number]
+        assert offset + count * width * 4 <= view["byteLength"]
+        return np.frombuffer(self.data, dtype, count * width, view["byteOffset"] + offset).reshape(count, width)
+
+    def accessor(self, number):
+        a = self.root["accessors"][number]
+        dtype, width, count = self.TYPE[a["componentType"]], self.WIDTH[a["type"]], a["count"]
+        value = np.zeros((count, width), dtype)
+        if "bufferView" in a:
+            value = self.view(a["bufferView"], dtype, width, count).copy()
+        if "sparse" in a:
+            s = a["sparse"]
+            index = self.view(s["indices"]["bufferView"], "<u4", 1, s["count"])[:, 0]
+            assert np.all(np.diff(index.astype(np.int64)) > 0) and index[-1] < count
+            value[index] = self.view(s["values"]["bufferView"], dtype, width, s["count"])
+        assert np.all(np.isfinite(value))
+        if "min" in a:
+            assert np.array_equal(value.min(axis=0), np.array(a["min"], dtype))
+            assert np.array_equal(value.max(axis=0), np.array(a["max"], dtype))
+        return value
+
+
+class Files(Case):
+    def test_obj_and_ply_sequences_hold_the_frames_bit_by_bit(self):
+        self.export("f_%02d.obj", "--unit", "m")
+        self.export("f_%02d.ply", "--format", "ply", "--unit", "m")
+        for k in range(FRAMES):
+            lines = self.bytes(f"f_{k:02d}.obj").decode().split("\n")
+            v = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
+            np.testing.assert_array_equal(v, self.position[k])
+            data = self.bytes(f"f_{k:02d}.ply")
+            body = data[data.index(b"end_header\n") + 11:]
+            row = 8 * len(re.findall(rb"property double", data[:data.index(b"element face")]))
+            v = np.array([struct.unpack_from("<3d", body, row * i) for i in range(len(v))])
+            np.testing.assert_array_equal(v, self.position[k])
+        self.assertEqual([line[2:] for line in lines if line.startswith("g ")], self.names)
+        vt = np.array([line.split()[1:] for line in lines if line.startswith("vt ")], float)
+        np.testing.assert_array_equal(vt, self.uv)
+        vn = np.array([line.split()[1:] for line in lines if line.startswith("vn ")], float)
+        np.testing.assert_allclose(np.linalg.norm(vn, axis=1), 1, atol=1e-12)
+        self.assertIn("z up", lines[0])
+
+    def test_gltf_is_sound_and_its_targets_are_the_frames(self):
+        self.export("a.glb", "--fps", "25", "--name", "sheet")
+        g = Glb(self.bytes("a.glb"))
+        node, mesh = g.root["nodes"][0], g.root["meshes"][0]
+        self.assertEqual((node["name"], node["scale"]), ("sheet", [0.01] * 3))
+        self.assertAlmostEqual(node["rotation"][0], -0.5 ** 0.5)
+        self.assertEqual([m["name"] for m in g.root["materials"]], self.names)
+        first = mesh["primitives"][0]
+        base = g.accessor(first["attributes"]["POSITION"]).astype(float)
+        uv = g.accessor(first["attributes"]["TEXCOORD_0"])
+        normal = g.accessor(first["attributes"]["NORMAL"])
+        np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1, atol=1e-6)
+        index = np.concatenate([g.accessor(p["indices"]).reshape(-1, 3) for p in mesh["primitives"]])
+        order = np.concatenate([np.flatnonzero(self.group == k) for k in range(2)])
+        for k in range(FRAMES):
+            now = base + (g.accessor(first["targets"][k - 1]["POSITION"]) if k else 0)
+            np.testing.assert_allclose(0.01 * now[index], self.position[k][self.triangle[order]], atol=2e-8)
+        st = self.uv[self.uv_triangle[order]]
+        np.testing.assert_allclose(uv[index], np.stack([st[..., 0], 1 - st[..., 1]], axis=-1), atol=1e-7)
+        sampler = g.root["animations"][0]["samplers"][0]
+        np.testing.assert_allclose(g.accessor(sampler["input"])[:, 0], np.arange(FRAMES) / 25, rtol=1e-6)
+        np.testing.assert_array_equal(g.accessor(sampler["output"]).reshape(FRAMES, FRAMES - 1),
+                                      np.eye(FRAMES, dtype="f4")[:, 1:])
+
+    def test_gltf_of_one_frame_and_of_still_frames(self):
+        self.export("one.glb", "--frame", "2")
+        g = Glb(self.bytes("one.glb"))
+        self.assertNotIn("animations", g.root)
+        self.assertNotIn("targets", g.root["meshes"][0]["primitives"][0])
+        with open(self.path("still.yaml"), "w") as file:
+            file.write(SCENE.replace("0.95", "1"))
+        run(RUGA, "run", "still.yaml", "-o", "still.h5", "--quiet", cwd=self.folder, status=None)
+        run(RUGA, "export", "still.h5", "-o", "still.glb", cwd=self.folder)
+        g = Glb(self.bytes("still.glb"))
+        moved = [a.get("sparse", {}).get("count", 0) for a in g.root["accessors"] if "bufferView" not in a]
+        self.assertEqual(len(moved), 2 * (FRAMES - 1))  # but for round-off nothing moves
+        self.assertLess(max(moved), 0.1 * self.position.shape[1])
+
+    def test_our_reader_reads_the_gltf(self):
+        self.export("r.glb", "--frame", "3", "--up", "y")
+        run(RUGA, "remesh", "r.glb", "--edge", "5mm", "-o", "r.obj", cwd=self.folder)
+        facts = json.loads(run(RUGA, "check", "r.glb", "--as", "shell", "--json", cwd=self.folder).stdout)
+        self.assertEqual((facts["vertices"], facts["triangles"]), (self.position.shape[1], len(self.triangle)))
+        np.testing.assert_allclose(facts["max"], self.position[3].max(axis=0), atol=1e-7)
+
+    def test_point_caches_hold_the_frames(self):
+        self.export("a.pc2", "--frames", "1:3")
+        data = self.bytes("a.pc2")
+        self.assertEqual(struct.unpack_from("<12siiffi", data),
+                         (b"POINTCACHE2\0", 1, self.position.shape[1], 1, 1, 3))
+        value = np.frombuffer(data, "<f4", offset=32).reshape(3, -1, 3)
+        np.testing.assert_array_equal(value, (self.position[1:] / 0.01).astype("f4"))
+        self.export("a.mdd", "--unit", "mm", "--fps", "10")
+        data = self.bytes("a.mdd")
+        self.assertEqual(struct.unpack_from(">ii", data), (FRAMES, self.position.shape[1]))
+        np.testing.assert_allclose(np.frombuffer(data, ">f4", FRAMES, 8), np.arange(FRAMES) / 10, rtol=1e-6)
+        value = np.frombuffer(data, ">f4", offset=8 + 4 * FRAMES).reshape(FRAMES, -1, 3)
+        np.testing.assert_array_equal(value, (self.position / 0.001).astype("f4"))
+
+    def test_usda_says_everything(self):
+        self.export("a.usda", "--up", "y")
+        text = self.bytes("a.usda").decode()
+        self.assertTrue(text.startswith("#usda 1.0\n("))
+        for pattern in (r"metersPerUnit = 0\.01\b", r'upAxis = "Y"', r"timeCodesPerSecond = 50", r"endTimeCode = 3",
+                        r'defaultPrim = "s"', r'def Mesh "s"', r'def GeomSubset "left_side"',
+                        r'def GeomSubset "_2_nd__side_"', r'name = "2-nd \\"side\\""', r'elementType = "face"'):
+            self.assertRegex(text, pattern)
+        self.assertEqual(text.count("{"), text.count("}"))
+        self.assertEqual(text.count("["), text.count("]"))
+
+        def numbers(name):
+            return np.array(re.findall(r"[-+\d.e]+", re.search(re.escape(name) + r" = \[(.*)\]", text).group(1)), float)
+
+        def samples(name):
+            block = re.search(re.escape(name) + r"\.timeSamples = \{\n(.*?)\n    \}", text, re.S).group(1)
+            rows = [re.match(r"\s+(\d+): \[(.*)\],$", line).groups() for line in block.split("\n")]
+            self.assertEqual([int(k) for k, _ in rows], list(range(FRAMES)))
+            return np.array([re.findall(r"[-+\d.e]+", row) for _, row in rows], float).reshape(FRAMES, -1, 3)
+
+        points = samples("points")
+        np.testing.assert_array_equal(points.astype("f4"), (self.position / 0.01).astype("f4"))
+        np.testing.assert_allclose(np.linalg.norm(samples("normals"), axis=2), 1, atol=1e-6)
+        np.testing.assert_allclose(samples("extent"), np.stack([points.min(axis=1), points.max(axis=1)], 1), rtol=1e-7)
+        np.testing.assert_array_equal(numbers("faceVertexIndices").reshape(-1, 3), self.triangle)
+        np.testing.assert_array_equal(numbers("primvars:st:indices").reshape(-1, 3), self.uv_triangle)
+        np.testing.assert_allclose(numbers("primvars:st").reshape(-1, 2)[:-1], self.uv, atol=1e-8) \
+            if "primvars:st = [" in text else self.fail("no uvs")
+
+    def test_xdmf_names_datasets_that_are_there(self):
+        self.export("a.xdmf", "--frames", "1:3")
+        grids = xml.parse(self.path("a.xdmf")).getroot().findall("./Domain/Grid/Grid")
+        self.assertEqual([float(g.find("Time").get("Value")) for g in grids], list(self.time[1:]))
+        with h5py.File(self.path("s.h5")) as file:
+            for item in xml.parse(self.path("a.xdmf")).getroot().iter("DataItem"):
+                if item.get("Format") == "HDF":
+                    name, place = item.text.split(":")
+                    self.assertEqual(name, "s.h5")
+                    self.assertEqual(list(file[place].shape), [int(n) for n in item.get("Dimensions").split()])
+        os.makedirs(self.path("other"), exist_ok=True)
+        self.export("other/a.xdmf")
+        self.assertIn(os.path.realpath(self.path("s.h5")) + ":/mesh", self.bytes("other/a.xdmf").decode())
+
+    def test_refusals_leave_nothing_behind(self):
+        before = sorted(os.listdir(self.folder))
+        for words, saying in (
+                (("x.glb", "--fps", "0"), "above 0"), (("x.glb", "--fps", "fast"), "--fps"),
+                (("x_%d.glb",), "one file"), (("x.gltf", "--format", "gltf"), "glb"), (("x.stl",), "which format"),
+                (("x.xdmf", "--unit", "mm"), "stay as they are"), (("x.pc2", "--up", "w"), "y"),
+                (("x.mdd", "--frames", "2:9"), "0:3"), (("nowhere/x.usda",), "nowhere"), (("x.obj", "--frames", "0:2"), "%04d")):
+            done = self.export(*words, status=2)
+            self.assertIn(saying, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1)
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+        if os.path.exists("/dev/full") and os.access("/dev/full", os.W_OK):
+            run("sh", "-c", f"ulimit -f 8; exec {RUGA} export s.h5 -o x.glb", cwd=self.folder, status=None)
+            self.assertEqual(sorted(n for n in os.listdir(self.folder) if n == "x.glb"), [])
+
+
+# ---- other programs ----------------------------------------------------------------------------------------
+
+BLENDER = r"""
+import bpy, json, sys, numpy as np
+if "bool" not in vars(np):
+    np.bool = bool  # the importer of Debian 12's Blender was written for an older numpy
+folder, frames = sys.argv[-2], int(sys.argv[-1])
+scene = bpy.context.scene
+scene.render.fps = 25
+scene.render.fps_base = 1
+
+def evaluated(thing, frame):
+    scene.frame_set(frame)
+    graph = bpy.context.evaluated_depsgraph_get()
+    mesh = thing.evaluated_get(graph).to_mesh()
+    co = np.empty(3 * len(mesh.vertices), "f4")
+    mesh.vertices.foreach_get("co", co)
+    world = np.array(thing.matrix_world)
+    return co.reshape(-1, 3).astype(float) @ world[:3, :3].T + world[:3, 3]
+
+def meshes():
+    return [o for o in bpy.data.objects if o.type == "MESH"]
+
+def clear():
+    for o in list(bpy.data.objects):
+        bpy.data.objects.remove(o)
+
+clear()
+bpy.ops.import_scene.gltf(filepath=folder + "/b.glb")
+(thing,) = meshes()
+np.save(folder + "/gltf.npy", np.array([evaluated(thing, k) for k in range(frames)]))
+loops = np.array([[thing.data.loops[i].vertex_index for i in p.loop_indices] for p in thing.data.polygons])
+np.save(folder + "/gltf_faces.npy", loops)
+info = {"gltf": thing.name, "materials": [m.name for m in thing.data.materials], "uv": len(thing.data.uv_layers)}
+for kind in ("pc2", "mdd"):
+    clear()
+    bpy.ops.wm.obj_import(filepath=folder + "/b_0.obj", forward_axis="Y", up_axis="Z")
+    (thing,) = meshes()
+    np.save(folder + "/obj.npy", evaluated(thing, 0))
+    cache = thing.modifiers.new("cache", "MESH_CACHE")
+    cache.cache_format = kind.upper()
+    cache.filepath = folder + "/b." + kind
+    cache.forward_axis, cache.up_axis, cache.frame_start = "POS_Y", "POS_Z", 0
+    np.save(folder + "/" + kind + ".npy", np.array([evaluated(thing, k) for k in range(frames)]))
+json.dump(info, open(folder + "/info.json", "w"))
+"""
+
+PARAVIEW = r"""
+import sys, numpy as np
+from paraview import simple, servermanager
+from vtkmodules.util.numpy_support import vtk_to_numpy
+path, into = sys.argv[-2:]
+source = simple.XDMFReader(FileNames=[path])
+source.UpdatePipelineInformation()
+times = list(source.TimestepValues)
+found = {"time": np.array(times)}
+for k, time in enumerate(times):
+    source.UpdatePipeline(time)
+    data = servermanager.Fetch(source)
+    while data.IsA("vtkMultiBlockDataSet"):
+        data = data.GetBlock(0)
+    found[f"position{k}"] = vtk_to_numpy(data.GetPoints().GetData())
+    for i in range(data.GetPointData().GetNumberOfArrays()):
+        array = data.GetPointData().GetArray(i)
+        found[f"{array.GetName()}{k}"] = vtk_to_numpy(array)
+    found[f"group{k}"] = vtk_to_numpy(data.GetCellData().GetArray("group"))
+    found[f"faces{k}"] = np.array([[data.GetCell(f).GetPointId(i) for i in range(3)] for f in range(data.GetNumberOfCells())])
+    bending = data.GetFieldData().GetArray("energy_bending")
+    found[f"energy{k}"] = vtk_to_numpy(bending) if bending else np.zeros(0)
+np.savez(into, **found)
+"""
+
+
+class Programs(Case):
+    def test_paraview_shows_the_same_bits(self):
+        if not shutil.which("pvpython"):
+            self.skipTest("paraview is not installed")
+        self.export("p.xdmf", "--frames", "1:3")
+        with open(self.path("p.py"), "w") as file:
+            file.write(PARAVIEW)
+        with h5py.File(self.path("s.h5")) as file:
+            embedded, rest = file["shell/embedded"][()], file["mesh/rest"][()]
+            energy = file["stats/energy_bending"][()]
+        run("pvpython", self.path("p.py"), self.path("p.xdmf"), self.path("p.npz"), cwd=self.folder)
+        found = np.load(self.path("p.npz"))
+        np.testing.assert_array_equal(found["time"], self.time[1:])
+        for k in range(FRAMES - 1):
+            np.testing.assert_array_equal(found[f"position{k}"], self.position[k + 1])
+            np.testing.assert_array_equal(found[f"embedded{k}"], embedded[k + 1])
+            np.testing.assert_array_equal(found[f"rest{k}"], rest)
+            np.testing.assert_array_equal(found[f"faces{k}"], self.triangle)
+            np.testing.assert_array_equal(found[f"group{k}"].ravel(), self.group)
+            self.assertEqual(found[f"energy{k}"].ravel()[0], energy[k + 1])
+
+    def test_khronos_validator_finds_no_error(self):
+        home = os.path.join(BUILD, "npm")
+        if not os.path.isdir(os.path.join(home, "node_modules", "gltf-validator")):
+            if not shutil.which("npm"):
+                self.skipTest("npm is not installed")
+            os.makedirs(home, exist_ok=True)
+            try:
+                run("npm", "install", "--no-audit", "--no-fund", "gltf-validator", cwd=home, timeout=90)
+            except (AssertionError, subprocess.TimeoutExpired) as trouble:
+                self.skipTest(f"npm cannot bring gltf-validator: {str(trouble)[:80]}")
+        self.export("v.glb")
+        self.export("v1.glb", "--frame", "1", "--subdivide", "1")
+        script = ("const v = require('gltf-validator'), fs = require('fs');"
+                  "v.validateBytes(new Uint8Array(fs.readFileSync(process.argv[1])))"
+                  ".then(r => console.log(JSON.stringify(r.issues)));")
+        for name in ("v.glb", "v1.glb"):
+            issues = json.loads(run("node", "-e", script, self.path(name), cwd=home).stdout)
+            self.assertEqual((issues["numErrors"], issues["numWarnings"]), (0, 0), issues["messages"][:3])
+
+    def test_blender_sees_the_same_positions(self):
+        if not shutil.which("blender"):
+            self.skipTest("blender is not installed")
+        self.export("b.glb", "--fps", "25", "--name", "sheet")
+        self.export("b.pc2", "--unit", "m")
+        self.export("b.mdd", "--unit", "m", "--fps", "25")
+        self.export("b_%d.obj", "--unit", "m")
+        with open(self.path("b.py"), "w") as file:
+            file.write(BLENDER)
+        done = run("blender", "-b", "--factory-startup", "--python-exit-code", "9", "--python", self.path("b.py"), "--", self.folder,
+                   FRAMES, cwd=self.folder)
+        self.assertTrue(os.path.exists(self.path("info.json")), done.stdout[-2000:])
+        info = json.loads(self.bytes("info.json"))
+        self.assertEqual((info["gltf"], info["uv"]), ("sheet", 1))
+        self.assertEqual(info["materials"], self.names)
+        np.testing.assert_allclose(np.load(self.path("obj.npy")), self.position[0], atol=1e-7)
+        for kind in ("pc2", "mdd"):
+            np.testing.assert_allclose(np.load(self.path(kind + ".npy")), self.position, atol=1e-7)
+        order = np.concatenate([np.flatnonzero(self.group == k) for k in range(2)])
+        corners, faces = self.position[:, self.triangle[order]], np.load(self.path("gltf_faces.npy"))
+        np.testing.assert_allclose(np.load(self.path("gltf.npy"))[:, faces], corners, atol=1e-7)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2)
