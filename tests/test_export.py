@@ -277,6 +277,127 @@ class Files(Case):
             self.assertEqual(sorted(n for n in os.listdir(self.folder) if n == "x.glb"), [])
 
 
+# ---- the other way: a moving surface in, wrinkles out ------------------------------------------------------------
+
+FOLLOW = """\
+mesh:     {file: sheet.obj, unit: cm}
+skin:     {thickness: 2 mm, young: 40 MPa}
+interior: {young: 0.5 MPa}
+lattice:  {fill: box}
+follow:   {file: NAME, rate: 25 1/s}
+time:     {step: 20 ms, frames: 4}
+"""
+
+
+class Follow(Case):
+    """The sheet pushed together by 5 % and turned, as three samples at 25 per second: frames 0, 2 and 4."""
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        with open(os.path.join(cls.folder, "sheet.obj")) as file:
+            lines = file.read().split("\n")
+        cls.rest = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
+        cls.moved = np.array([cls.move(cls.rest, s) for s in (0, 0.5, 1)])
+        cls.write_pc2("body.pc2", cls.moved)
+        with open(os.path.join(cls.folder, "body.mdd"), "wb") as file:
+            file.write(struct.pack(">ii3f", 3, len(cls.rest), 0, 0.04, 0.08) + cls.moved.astype(">f4").tobytes())
+        for k, frame in enumerate(cls.moved):
+            with open(os.path.join(cls.folder, f"body_{k + 1:03d}.obj"), "w") as file:
+                file.write("\n".join(["v %.17g %.17g %.17g" % tuple(p) for p in frame]
+                                     + [line for line in lines if line.startswith("f ")]) + "\n")
+
+    @staticmethod
+    def move(x, s):
+        c, n = np.cos(0.7 * s), np.sin(0.7 * s)
+        return (x * [1 - 0.05 * s, 1, 1]) @ np.array([[c, n, 0], [-n, c, 0], [0, 0, 1]]) + [0, 3 * s, -s]
+
+    @classmethod
+    def write_pc2(cls, name, samples):
+        with open(os.path.join(cls.folder, name), "wb") as file:
+            file.write(struct.pack("<12siiffi", b"POINTCACHE2", 1, samples.shape[1], 1, 1, len(samples))
+                       + samples.astype("<f4").tobytes())
+
+    def scene(self, name, cache, *changes):
+        text = FOLLOW.replace("NAME", cache)
+        for old, new in changes:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        with open(self.path(name + ".yaml"), "w") as file:
+            file.write(text)
+        return name + ".yaml"
+
+    def simulate(self, name, cache, *changes):
+        run(RUGA, "run", self.scene(name, cache, *changes), "-o", name + ".h5", "--force", cwd=self.folder)
+        with h5py.File(self.path(name + ".h5")) as file:
+            return (file["mesh/rest"][()], file["shell/embedded"][()], file["shell/position"][()])
+
+    def test_each_kind_of_file_moves_the_interior_and_wrinkles_the_skin(self):
+        for name, cache, changes in (("pc2", "body.pc2", ()), ("mdd", "body.mdd", ((", rate: 25 1/s", ""),)),
+                                     ("obj", "body_%03d.obj", ())):
+            rest, embedded, position = self.simulate(name, cache, *changes)
+            for frame in (0, 2, 4):
+                np.testing.assert_allclose(embedded[frame], 0.01 * self.move(100 * rest, frame / 4), atol=2e-8)
+            np.testing.assert_allclose(embedded[1], (embedded[0] + embedded[2]) / 2, atol=1e-9)
+            height = (position - embedded)[4, :, 2]
+            self.assertGreater(np.ptp(height), 3e-3)  # wrinkles
+            facts = json.loads(run(RUGA, "measure", name + ".h5", "--json", cwd=self.folder).stdout)
+            self.assertAlmostEqual(facts["wavelength"], facts["wavelength_predicted"],
+                                   delta=0.12 * facts["wavelength_predicted"])
+        facts = json.loads(run(RUGA, "explain", "pc2.yaml", "--json", cwd=self.folder).stdout)
+        self.assertAlmostEqual(facts["strain"], 0.05, places=5)
+
+    def test_a_remeshed_surface_is_carried_by_the_one_it_came_from(self):
+        rest, embedded, _ = self.simulate("fine", "body.pc2", ("unit: cm", "unit: cm, remesh: {edge: 3.4 mm}"))
+        self.assertNotEqual(len(rest), len(self.rest))
+        for frame in (0, 2, 4):
+            np.testing.assert_allclose(embedded[frame], 0.01 * self.move(100 * rest, frame / 4), atol=1e-7)
+
+    def test_a_part_of_the_mesh_takes_its_points(self):
+        rest, embedded, _ = self.simulate("part", "body.pc2", ("unit: cm", "unit: cm, groups: [left side]"))
+        self.assertLess(len(rest), len(self.rest))
+        np.testing.assert_allclose(embedded[4], 0.01 * self.move(100 * rest, 1), atol=2e-8)
+
+    def test_resumed_bits_are_the_same_and_another_cache_is_refused(self):
+        self.simulate("whole", "body.pc2")
+        run(RUGA, "run", "whole.yaml", "-o", "broken.h5", "--frames", 2, cwd=self.folder)
+        run(RUGA, "run", "whole.yaml", "-o", "broken.h5", "--resume", cwd=self.folder)
+        with h5py.File(self.path("whole.h5")) as a, h5py.File(self.path("broken.h5")) as b:
+            np.testing.assert_array_equal(a["shell/position"][()], b["shell/position"][()])
+        self.write_pc2("other.pc2", self.moved * 1.001)
+        self.write_pc2("same.pc2", self.moved)
+        self.scene("whole", "other.pc2")
+        done = run(RUGA, "run", "whole.yaml", "-o", "broken.h5", "--resume", cwd=self.folder, status=2)
+        self.assertIn("another scene", done.stderr)
+
+    def test_what_does_not_fit_is_refused_with_its_place(self):
+        self.write_pc2("few.pc2", self.moved[:, 1:])
+        self.write_pc2("nan.pc2", np.where(np.arange(3)[:, None, None] == 1, np.nan, self.moved))
+        with open(self.path("cut.pc2"), "wb") as file:
+            file.write(self.bytes("body.pc2")[:-7])
+        with open(self.path("back.mdd"), "wb") as file:
+            file.write(struct.pack(">ii3f", 3, len(self.rest), 1, 2, 2) + self.moved.astype(">f4").tobytes())
+        for cache, changes, saying in (
+                ("few.pc2", (), r"few.pc2 has \d+ points, and sheet.obj \d+ vertices"), ("nan.pc2", (), "sample 1"),
+                ("cut.pc2", (), "the file has"), ("back.mdd", ((", rate: 25 1/s", ""),), "time of sample 2"),
+                ("body.mdd", (), "times of its own"), ("none.pc2", (), "cannot be read"),
+                ("no_%d.obj", (), "number 0 or 1"), ("body.abc", (), r"read from .pc2"),
+                ("body.pc2", (("follow:", "prescribed: [{time: 0 s}]\nfollow:"),), "keep one"),
+                ("body.pc2", (("MPa}\nlattice", "MPa, motion: dynamic}\nlattice"),), "prescribed interior only"),
+                ("body.pc2", (("rate: 25", "rate: -25"),), "above 0"), ("body.pc2", (("rate", "ratio"),), "follow")):
+            done = run(RUGA, "run", self.scene("bad", cache, *changes), "-o", "bad.h5", cwd=self.folder, status=2)
+            self.assertRegex(done.stderr, r"bad\.yaml:\d+: ")
+            self.assertRegex(done.stderr, saying)
+            self.assertFalse(os.path.exists(self.path("bad.h5")))
+        done = run(RUGA, "explain", self.scene("long", "body.pc2", ("frames: 4", "frames: 9")), cwd=self.folder)
+        self.assertIn("it is held", done.stderr)
+        done = run(RUGA, "explain", self.scene("unit", "body.pc2", ("unit: cm", "unit: m, scale: 0.01")),
+                   cwd=self.folder)
+        self.assertNotIn("its unit", done.stderr)
+        self.write_pc2("mm.pc2", 10 * self.moved)
+        done = run(RUGA, "explain", self.scene("unit", "mm.pc2"), cwd=self.folder)
+        self.assertIn("10 times as large", done.stderr)
+
+
 # ---- other programs ----------------------------------------------------------------------------------------
 
 BLENDER = r"""
