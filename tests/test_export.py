@@ -304,7 +304,7 @@ class Follow(Case):
         for k, frame in enumerate(cls.moved):
             with open(os.path.join(cls.folder, f"body_{k + 1:03d}.obj"), "w") as file:
                 file.write("\n".join(["v %.17g %.17g %.17g" % tuple(p) for p in frame]
-                                     + [line for line in lines if line.startswith("f ")]) + "\n")
+                                     + [line for line in lines if line.startswith(("vt ", "f "))]) + "\n")
 
     @staticmethod
     def move(x, s):
