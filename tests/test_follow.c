@@ -200,7 +200,8 @@ static void each_allocation_may_fail(void** state) {
     for (ruga_status status = RUGA_NO_MEMORY; status != RUGA_OK; k++) {
         size_t before = ruga_byte_count();
         let_allocations_fail_after(k);
-        status = ruga_follow_create(&model->lattice, &model->mesh, model->vertex_area, &s.def.follow, &follow);
+        status =
+            ruga_follow_create(&model->lattice, &model->mesh, model->vertex_area, &s.def.follow, &follow);
         ruga_set_allocator(NULL, NULL, NULL);
         assert_true(status == RUGA_OK || status == RUGA_NO_MEMORY);
         assert_true(status == RUGA_OK || ruga_byte_count() == before);
