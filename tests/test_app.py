@@ -120,7 +120,7 @@ class Help(Case):
 
     def test_every_command_explains_itself(self):
         text = self.ruga("--help").stdout
-        for name in "make check remesh explain run measure export render".split():
+        for name in "make check remesh explain run measure export bake render".split():
             self.assertRegex(text, rf"(?m)^    {name} ")
             about = self.ruga(name, "--help").stdout
             self.assertIn(f"usage: ruga {name} ", about)
@@ -131,7 +131,7 @@ class Help(Case):
     def test_version_names_the_libraries(self):
         text = self.ruga("--version").stdout
         for name in ("ruga 0.", "SuiteSparse", "CHOLMOD", "Belos", "OpenVDB", "HDF5", "CGAL", "libyaml", "UDUNITS",
-                     "cairo"):
+                     "cairo", "OpenEXR"):
             self.assertIn(name, text)
         self.assertNotRegex(text, r"(?m) $")
 

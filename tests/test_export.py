@@ -13,6 +13,7 @@ import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree as xml
+import zlib
 
 try:
     import h5py
@@ -398,6 +399,209 @@ class Follow(Case):
         self.assertIn("10 times as large", done.stderr)
 
 
+# ---- maps ------------------------------------------------------------------------------------------------------
+
+def read_exr(data):
+    """Scan lines compressed by ZIP, as the format's description has it: [height][width][3] as R, G, B."""
+    assert struct.unpack_from("<II", data) == (20000630, 2)
+    at, head = 8, {}
+    while data[at]:
+        name, kind, rest = data[at:].split(b"\0", 2)
+        at += len(name) + len(kind) + 2
+        (size,) = struct.unpack_from("<i", data, at)
+        head[name.decode()] = data[at + 4:at + 4 + size]
+        at += 4 + size
+    at += 1
+    assert head["compression"] == b"\3"  # ZIP, 16 lines a block
+    left, top, right, bottom = struct.unpack("<4i", head["dataWindow"])
+    width, height = right - left + 1, bottom - top + 1
+    names = re.findall(rb"([A-Z])\0(.)\0\0\0", head["channels"], re.S)
+    assert [name for name, _ in names] == [b"B", b"G", b"R"]
+    dtype = {b"\1": "<f2", b"\2": "<f4"}[names[0][1]]
+    pixel = np.zeros((height, 3, width), dtype)
+    for offset in struct.unpack_from(f"<{(height + 15) // 16}Q", data, at):
+        y, size = struct.unpack_from("<ii", data, offset)
+        packed, lines = data[offset + 8:offset + 8 + size], min(16, height - y)
+        raw = lines * 3 * width * np.dtype(dtype).itemsize
+        if size < raw:
+            d = np.frombuffer(zlib.decompress(packed), np.uint8).astype(int)
+            d[1:] -= 128
+            d = (np.cumsum(d) & 255).astype(np.uint8)
+            whole = np.empty(raw, np.uint8)
+            whole[0::2], whole[1::2] = d[:(raw + 1) // 2], d[(raw + 1) // 2:]
+            packed = whole.tobytes()
+        pixel[y:y + lines] = np.frombuffer(packed, dtype).reshape(lines, 3, width)
+    return pixel.transpose(0, 2, 1)[:, :, ::-1].astype(float), head
+
+
+def read_png16(data):
+    width, height, depth, color = struct.unpack_from(">IIBB", data, 16)
+    assert (depth, color) == (16, 2)
+    at, packed = 8, b""
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        packed += data[at + 8:at + 8 + size] if kind == b"IDAT" else b""
+        at += size + 12
+    raw, row, rows = zlib.decompress(packed), 6 * width, []
+    before = np.zeros(row, int)
+    for y in range(height):
+        kind, line = raw[y * (row + 1)], np.frombuffer(raw, np.uint8, row, y * (row + 1) + 1).astype(int)
+        if kind == 1:
+            line = (np.cumsum(line.reshape(-1, 6), axis=0) & 255).ravel()
+        elif kind == 2:
+            line = (line + before) & 255
+        elif kind > 2:
+            for i in range(row):
+                a, b, c = (line[i - 6] if i >= 6 else 0), before[i], (before[i - 6] if i >= 6 else 0)
+                p = a + b - c
+                pick = (a + b) // 2 if kind == 3 else min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+                line[i] = (line[i] + pick) & 255
+        rows.append(line)
+        before = line
+    return np.array(rows, np.uint8).reshape(height, width, 3, 2).astype(int) @ [256, 1]
+
+
+class Bake(Case):
+    SIZE = 128
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        with h5py.File(os.path.join(cls.folder, "s.h5")) as file:
+            cls.embedded, cls.rest = file["shell/embedded"][()], file["mesh/rest"][()]
+
+    def bake(self, name, *words, status=0):
+        return run(RUGA, "bake", "s.h5", "--size", self.SIZE, "-o", name, *words, cwd=self.folder, status=status)
+
+    def wanted(self, value):
+        """Texels whose centre lies in a triangle, and the value [V][..] there."""
+        corners = self.uv[self.uv_triangle]
+        corners = np.concatenate([corners, np.ones(corners.shape[:2] + (1,))], axis=2)
+        inverse = np.linalg.inv(corners.transpose(0, 2, 1))
+        row, column = (n.ravel() for n in np.mgrid[:self.SIZE, :self.SIZE])
+        u, v = (column + 0.5) / self.SIZE, 1 - (row + 0.5) / self.SIZE
+        near = (np.minimum(abs(u - 0.2), abs(u - 0.8)) < 0.06) & (abs(v - 0.5) < 0.21)
+        row, column, at = row[near], column[near], np.stack([u[near], v[near], np.ones(near.sum())])
+        w = inverse @ at  # [F][3][texels]
+        f = w.min(axis=1).argmax(axis=0)
+        w = w[f, :, np.arange(len(f))]
+        inside = w.min(axis=1) >= 0
+        found = np.einsum("ti,tik->tk", w, value[self.triangle[f]])
+        return row[inside], column[inside], found[inside]
+
+    def test_displacements_are_those_of_the_result(self):
+        # The sheet is flat and stretched along its axes: tangent x, bitangent y, normal z.
+        rows, columns, d = self.wanted(self.position[3] - self.embedded[3])
+        self.assertGreater(len(rows), 500)
+        self.bake("d.exr", "--unit", "m")
+        pixel, head = read_exr(self.bytes("d.exr"))
+        np.testing.assert_allclose(pixel[rows, columns], d, atol=2e-8)
+        self.assertIn(b"unit 1 m", head["comments"])
+        self.bake("d_cm.exr", "--half")
+        pixel, _ = read_exr(self.bytes("d_cm.exr"))
+        np.testing.assert_allclose(pixel[rows, columns], 100 * d, rtol=1e-3, atol=1e-5)
+        said = self.bake("d.png", "--range", "4 mm").stdout
+        self.assertIn("-4 to 4 mm", said)
+        self.assertRegex(said, r"normal alone leaves \d")
+        pixel = read_png16(self.bytes("d.png"))
+        np.testing.assert_allclose((pixel[rows, columns] / 65535 - 0.5) * 8e-3, d, atol=1e-7)
+        border = pixel[0]  # far from any chart: no displacement
+        np.testing.assert_array_equal(border, np.full_like(border, 32768))
+
+    def test_normals_tension_and_occlusion(self):
+        rows, columns, _ = self.wanted(self.rest)
+        self.bake("n.png", "--map", "normal")
+        n = read_png16(self.bytes("n.png"))[rows, columns] / 65535 * 2 - 1
+        np.testing.assert_allclose(np.linalg.norm(n, axis=1), 1, atol=1e-4)
+        self.assertGreater(n[:, 2].min(), 0.5)
+        self.assertGreater(np.ptp(n[:, 0]), 0.1)
+        self.bake("t.exr", "--map", "tension")
+        t, _ = read_exr(self.bytes("t.exr"))
+        np.testing.assert_allclose(t[rows, columns], np.full((len(rows), 3), [0, -0.05, -0.05]), atol=1e-6)
+        self.bake("a.exr", "--map", "ao", "--frame", "0", "--samples", "16")
+        a, _ = read_exr(self.bytes("a.exr"))
+        np.testing.assert_array_equal(a[rows, columns], np.ones((len(rows), 3)))  # a flat sheet sees all of the sky
+        self.bake("a.exr", "--map", "ao", "--samples", "16")
+        a, _ = read_exr(self.bytes("a.exr"))
+        self.assertTrue(0.5 < a[rows, columns].min() < 0.99)
+
+    def test_a_target_is_carried_along_and_met_by_rays(self):
+        # Two quads with the sheet's uvs and seam, in the sheet's unit.
+        with open(self.path("low.obj"), "w") as file:
+            for x in (-7, 0, 7):
+                file.write(f"v {x} -2 0\nv {x} 2 0\n")
+            for x, shift in ((-7, 0), (0, 0), (0, 0.5), (7, 0.5)):
+                for y in (-2, 2):
+                    file.write(f"vt {0.25 + shift + 0.015 * x} {0.5 + 0.1 * y}\n")
+            file.write("f 1/1 3/3 4/4 2/2\nf 3/5 5/7 6/8 4/6\n")
+        self.bake("low.exr", "--target", "low.obj", "--unit", "m")
+        pixel, _ = read_exr(self.bytes("low.exr"))
+        # A ray meets the sheet straight above: the height there, not the displacement of one material point.
+        self.bake("own.exr", "--unit", "m")
+        own, _ = read_exr(self.bytes("own.exr"))
+        rows, columns, d = self.wanted(self.position[3] - self.embedded[3])
+        np.testing.assert_allclose(pixel[rows, columns, :2], 0, atol=1e-7)
+        rise = np.abs(pixel[rows, columns, 2] - own[rows, columns, 2])
+        self.assertLess(rise.max(), 0.3 * np.ptp(d[:, 2]))
+        self.assertGreater(np.corrcoef(pixel[rows, columns, 2], own[rows, columns, 2])[0, 1], 0.99)
+
+    def test_a_few_maps_and_weights_stand_for_all_frames(self):
+        self.bake("w_%d.exr", "--maps", "2", "--unit", "m")
+        self.bake("f_%d.exr", "--frames", "0:3", "--unit", "m")
+        facts = json.loads(self.bytes("w_weights.json"))
+        self.assertEqual((facts["maps"], facts["frames"], facts["map"]), (["w_0.exr", "w_1.exr"], [0, 1, 2, 3],
+                                                                          "displacement"))
+        np.testing.assert_array_equal(facts["times"], self.time)
+        weights = np.array(facts["weights"])
+        self.assertGreaterEqual(weights.min(), 0)
+        np.testing.assert_allclose(weights.max(axis=0), 1)
+        maps = np.array([read_exr(self.bytes(name))[0] for name in facts["maps"]])
+        frames = np.array([read_exr(self.bytes(f"f_{k}.exr"))[0] for k in range(FRAMES)])
+        size = np.linalg.norm(frames.reshape(FRAMES, -1), axis=1).max()
+        for k in range(FRAMES):
+            left = np.linalg.norm(np.tensordot(weights[k], maps, 1) - frames[k]) / size
+            self.assertAlmostEqual(left, facts["errors"][k], delta=0.02)
+        self.assertLess(max(facts["errors"]), 0.3)
+        for kind in ("normal", "ao"):
+            self.bake("k_%d.png", "--map", kind, "--maps", "1", "--samples", "4")
+            self.assertEqual(json.loads(self.bytes("k_weights.json"))["map"], kind)
+
+    def test_same_bits_for_any_number_of_threads(self):
+        for threads in ("1", "3"):
+            for kind in ("displacement", "ao"):
+                done = subprocess.run([RUGA, "bake", "s.h5", "--size", "64", "--map", kind, "-o", f"{kind}{threads}.exr"],
+                                      cwd=self.folder, env={**os.environ, "RUGA_THREADS": threads}, capture_output=True)
+                self.assertEqual(done.returncode, 0)
+        for kind in ("displacement", "ao"):
+            self.assertEqual(self.bytes(f"{kind}1.exr"), self.bytes(f"{kind}3.exr"))
+
+    def test_refusals(self):
+        self.write("nouv.obj", "v -7 -2 0\nv 7 -2 0\nv 0 2 0\nf 1 2 3\n")
+        self.write("out.obj", "v -7 -2 0\nv 7 -2 0\nv 0 2 0\nvt 0 0\nvt 2 0\nvt 0 1\nf 1/1 2/2 3/3\n")
+        self.write("far.obj", "v -7 -2 900\nv 7 -2 900\nv 0 2 900\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n")
+        self.write("twice.obj", "v -7 -2 0\nv 7 -2 0\nv 0 2 0\nv 0 -4 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                                "f 1/1 2/2 3/3\nf 2/1 1/2 4/3\n")
+        before = sorted(os.listdir(self.folder))
+        for words, saying in (
+                (("x.tif",), ".exr or .png"), (("x.exr", "--map", "bump"), "displacement"),
+                (("x.exr", "--range", "1mm"), "the numbers themselves"), (("x.png", "--map", "ao", "--range", "1"), "of their own"),
+                (("x_%d.png", "--frames", "1:2"), "one range"), (("x.exr", "--frames", "1:2"), "%04d"),
+                (("x.exr", "--maps", "1"), "%d"), (("x_%d.exr", "--maps", "5"), "5 maps of 4 frames"),
+                (("x.png", "--half"), "16 bits"), (("x.exr", "--target", "nouv.obj"), "no texture coordinates"),
+                (("x.exr", "--target", "out.obj"), "outside 0 to 1"), (("x.exr", "--target", "twice.obj"), "overlap"),
+                (("x.exr", "--target", "far.obj"), "place and unit"), (("x.exr", "--target", "none.obj"), "none.obj"),
+                (("x.exr", "--size", "1"), "--size"), (("x.exr", "--sky", "0"), "above 0")):
+            done = self.bake(*words, status=2) if "--size" not in words else run(
+                RUGA, "bake", "s.h5", "-o", *words, cwd=self.folder, status=2)
+            self.assertIn(saying, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    def write(self, name, text):
+        with open(self.path(name), "w") as file:
+            file.write(text)
+
+
 # ---- other programs ----------------------------------------------------------------------------------------
 
 BLENDER = r"""
@@ -442,6 +646,8 @@ for kind in ("pc2", "mdd"):
     cache.filepath = folder + "/b." + kind
     cache.forward_axis, cache.up_axis, cache.frame_start = "POS_Y", "POS_Z", 0
     np.save(folder + "/" + kind + ".npy", np.array([evaluated(thing, k) for k in range(frames)]))
+image = bpy.data.images.load(folder + "/b.exr")
+np.save(folder + "/exr.npy", np.array(image.pixels[:]).reshape(image.size[1], image.size[0], 4)[::-1, :, :3])
 json.dump(info, open(folder + "/info.json", "w"))
 """
 
@@ -518,6 +724,7 @@ class Programs(Case):
         self.export("b.pc2", "--unit", "m")
         self.export("b.mdd", "--unit", "m", "--fps", "25")
         self.export("b_%d.obj", "--unit", "m")
+        run(RUGA, "bake", "s.h5", "--size", "64", "-o", "b.exr", cwd=self.folder)
         with open(self.path("b.py"), "w") as file:
             file.write(BLENDER)
         done = run("blender", "-b", "--factory-startup", "--python-exit-code", "9", "--python", self.path("b.py"), "--", self.folder,
@@ -529,6 +736,7 @@ class Programs(Case):
         np.testing.assert_allclose(np.load(self.path("obj.npy")), self.position[0], atol=1e-7)
         for kind in ("pc2", "mdd"):
             np.testing.assert_allclose(np.load(self.path(kind + ".npy")), self.position, atol=1e-7)
+        np.testing.assert_allclose(np.load(self.path("exr.npy")), read_exr(self.bytes("b.exr"))[0], atol=1e-7)
         order = np.concatenate([np.flatnonzero(self.group == k) for k in range(2)])
         corners, faces = self.position[:, self.triangle[order]], np.load(self.path("gltf_faces.npy"))
         np.testing.assert_allclose(np.load(self.path("gltf.npy"))[:, faces], corners, atol=1e-7)
