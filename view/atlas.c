@@ -98,7 +98,7 @@ static ruga_status check_uvs(const char* what, const ruga_mesh* mesh) {
             return ruga_fail(
                 RUGA_BAD_INPUT,
                 "%s: texture coordinate %d of triangle %zu is (%.4g, %.4g), outside 0 to 1: pack all charts "
-                "into one square",
+                "into one square, or bake onto another mesh by --target",
                 what, u, c / 3, uv[0], uv[1]);
         }
     }
@@ -171,7 +171,8 @@ static ruga_status paint(painter* p) {
         return ruga_fail(
             RUGA_BAD_INPUT,
             "%s: the texture coordinates of triangles %d and %d overlap at (%.4g, %.4g), and so do others at "
-            "%d texels in all: give each triangle a place of its own",
+            "%d texels in all: give each triangle a place of its own, or bake onto another mesh by "
+            "--target",
             p->what, p->overlap[0], p->overlap[1], (p->column + 0.5) / atlas->width,
             1 - (p->row + 0.5) / atlas->height, p->overlaps);
     }
