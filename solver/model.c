@@ -274,16 +274,18 @@ static ruga_status build_coupling(ruga_model* model) {
     return RUGA_OK;
 }
 
-static ruga_status build_interior(const ruga_motion_def* follow, ruga_model* model) {
+static ruga_status build_interior(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(ruga_progress("building the lattice", 0));
     RUGA_TRY(ruga_lattice_create(&model->mesh, &model->connectivity, &model->lattice_def, &model->lattice));
     if (!ruga_model_is_prescribed(model)) {
         RUGA_TRY(ruga_rows_create(&model->lattice, &model->mesh, model->handle_count, model->handles,
                                   &model->rows));
     }
-    if (ruga_model_is_prescribed(model) && follow->sample_count > 0) {
-        RUGA_TRY(
-            ruga_follow_create(&model->lattice, &model->mesh, model->vertex_area, follow, &model->follow));
+    if (ruga_model_is_prescribed(model) && def->follow.sample_count > 0) {
+        if (model->mesh.vertex_count != def->mesh.vertex_count) { // cut
+            return ruga_fail(RUGA_BAD_INPUT, "follow: a mesh that is cut by creases cannot follow a moving surface");
+        }
+        RUGA_TRY(ruga_follow_create(&model->lattice, &model->mesh, model->vertex_area, &def->follow, &model->follow));
     }
     return build_coupling(model);
 }
@@ -335,7 +337,7 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
     RUGA_TRY_DONE(ruga_loads_create(&model->mesh, &model->connectivity, model->handle_count, model->handles,
                                     &model->loads));
     if (model->has_interior) {
-        RUGA_TRY_DONE(build_interior(&def->follow, model));
+        RUGA_TRY_DONE(build_interior(def, model));
         if (model->skin.model == RUGA_SKIN_VOLUME) {
             RUGA_TRY_DONE(build_dense(model, def->lattice.depth));
         }

@@ -676,6 +676,32 @@ for k, time in enumerate(times):
 np.savez(into, **found)
 """
 
+# Made for browsers: node is told to pass for one.
+TINYUSDZ = r"""
+import fs from "fs";
+const web = new URL("./node_modules/tinyusdz/", import.meta.url);
+Object.defineProperty(process, "type", {value: "renderer"});
+globalThis.window = globalThis;
+globalThis.document = {currentScript: null};
+let usd;
+try {
+    const start = (await import(new URL("tinyusdz.js", web))).default;
+    usd = await start({wasmBinary: fs.readFileSync(new URL("tinyusdz.wasm", web))});
+} catch (trouble) {
+    console.error(trouble);
+    process.exit(7);
+}
+const data = new Uint8Array(fs.readFileSync(process.argv[2]));
+const scene = new usd.TinyUSDZLoaderNative(), layer = new usd.TinyUSDZLoaderNative();
+if (!scene.loadFromBinary(data, "u.usda") || scene.numMeshes() !== 1) {
+    throw new Error("no mesh: " + scene.error());
+}
+if (!layer.loadAsLayerFromBinary(data, "u.usda")) {
+    throw new Error("no layer: " + layer.error());
+}
+fs.writeFileSync(process.argv[3], layer.layerToString());
+"""
+
 
 class Programs(Case):
     def test_paraview_shows_the_same_bits(self):
@@ -698,16 +724,38 @@ class Programs(Case):
             np.testing.assert_array_equal(found[f"group{k}"].ravel(), self.group)
             self.assertEqual(found[f"energy{k}"].ravel()[0], energy[k + 1])
 
-    def test_khronos_validator_finds_no_error(self):
+    def npm(self, package):
+        """The folder that has a package of npm, brought there by npm itself."""
         home = os.path.join(BUILD, "npm")
-        if not os.path.isdir(os.path.join(home, "node_modules", "gltf-validator")):
+        if not os.path.isdir(os.path.join(home, "node_modules", package)):
             if not shutil.which("npm"):
                 self.skipTest("npm is not installed")
             os.makedirs(home, exist_ok=True)
             try:
-                run("npm", "install", "--no-audit", "--no-fund", "gltf-validator", cwd=home, timeout=90)
+                run("npm", "install", "--no-audit", "--no-fund", package, cwd=home, timeout=90)
             except (AssertionError, subprocess.TimeoutExpired) as trouble:
-                self.skipTest(f"npm cannot bring gltf-validator: {str(trouble)[:80]}")
+                self.skipTest(f"npm cannot bring {package}: {str(trouble)[:80]}")
+        return home
+
+    def test_tinyusdz_reads_the_usda(self):
+        home = self.npm("tinyusdz")
+        self.export("u.usda", "--unit", "m")
+        with open(os.path.join(home, "usda.mjs"), "w") as file:
+            file.write(TINYUSDZ)
+        done = run("node", "usda.mjs", self.path("u.usda"), self.path("back.usda"), cwd=home, status=None)
+        if done.returncode == 7:
+            self.skipTest("tinyusdz does not start in this node")
+        self.assertEqual(done.returncode, 0, done.stderr[-500:])
+        text = self.bytes("back.usda").decode()
+        block = re.search(r"points\.timeSamples = \{(.*?)\n\s*\}", text, re.S).group(1)
+        points = [re.findall(r"[-+\d.e]+", row) for row in re.findall(r"\d+: \[(.*?)\]", block, re.S)]
+        np.testing.assert_allclose(np.array(points, float).reshape(self.position.shape), self.position, atol=2e-8)
+        for pattern in (r'upAxis = "Z"', "metersPerUnit = 1", 'def GeomSubset "left_side"', "normals.timeSamples",
+                        "primvars:st:indices"):
+            self.assertRegex(text, pattern)
+
+    def test_khronos_validator_finds_no_error(self):
+        home = self.npm("gltf-validator")
         self.export("v.glb")
         self.export("v1.glb", "--frame", "1", "--subdivide", "1")
         script = ("const v = require('gltf-validator'), fs = require('fs');"

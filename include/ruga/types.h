@@ -84,8 +84,8 @@ typedef struct ruga_keyframe_def {
     double bump_direction[3]; // need not be of unit length
 } ruga_keyframe_def;
 
-// A moving surface that the interior follows in place of keyframes. The samples are asked for in order, some
-// more than once, while a model is created; another status than RUGA_OK ends that.
+// A moving surface that the interior follows in place of keyframes. The samples are asked for in order while a model is
+// created; another status than RUGA_OK ends that.
 typedef ruga_status ruga_sample_function(int sample, double* positions, void* context);
 typedef struct ruga_motion_def {
     int sample_count;           // 0 = none
