@@ -329,7 +329,7 @@ static void tell_report(const job* j, const ruga_bake_report* report) {
 
 static ruga_status bake_frames(job* j) {
     for (int frame = j->range.first; frame <= j->range.last; frame++) {
-        ruga_bake_report report;
+        ruga_bake_report report = {0};
         char* path = NULL;
         RUGA_TRY(bake_frame(j, frame, &j->atlas, j->pixel, &report));
         ruga_status status = write_map(j, frame, j->pixel, &path);
@@ -392,7 +392,7 @@ static ruga_status find_blend(job* j) {
     size_t texels = (size_t)j->small.width * (size_t)j->small.height;
     RUGA_TRY(RUGA_NEW_ZERO(j->sample, frames));
     for (int f = 0; f < frames; f++) {
-        ruga_bake_report report;
+        ruga_bake_report report = {0};
         RUGA_TRY(RUGA_NEW(j->sample[f], 3 * texels));
         RUGA_TRY(bake_frame(j, j->range.first + f, &j->small, j->sample[f], &report));
         to_sum(j, texels, j->sample[f]);
@@ -408,7 +408,7 @@ static ruga_status add_frames(job* j) {
         RUGA_TRY(RUGA_NEW_ZERO(j->map[k], 3 * texels));
     }
     for (int f = 0; f < j->blend.frames; f++) {
-        ruga_bake_report report;
+        ruga_bake_report report = {0};
         RUGA_TRY(bake_frame(j, j->range.first + f, &j->atlas, j->pixel, &report));
         to_sum(j, texels, j->pixel);
         for (int k = 0; k < j->maps; k++) {
