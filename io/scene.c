@@ -57,6 +57,7 @@ static ruga_status keep_text(const ruga_yaml_node* root, ruga_scene_parts* parts
     return status;
 }
 
+// Without a directory, no mesh.
 static ruga_status build(ruga_yaml_node* root, ruga_pool* tree, const char* directory, int set_count,
                          const char* const* sets, ruga_scene* scene) {
     ruga_scene_parts* parts = scene->storage;
@@ -69,6 +70,9 @@ static ruga_status build(ruga_yaml_node* root, ruga_pool* tree, const char* dire
     RUGA_TRY(ruga_scene_check_keys(root, parts, &scene->def));
     RUGA_TRY(keep_text(root, parts, &scene->text));
     scene->hash = hash_values(parts);
+    if (!directory) {
+        return RUGA_OK;
+    }
     RUGA_TRY(ruga_scene_load_mesh(root, directory, scene));
     RUGA_TRY(ruga_scene_vary_skin(root, directory, scene));
     scene->hash = hash_arrays(scene->hash, &scene->def.skin);
@@ -107,6 +111,10 @@ done:
 ruga_status ruga_scene_read_text(const char* text, const char* name, const char* directory, int set_count,
                                  const char* const* sets, ruga_scene* scene) {
     return read_text(text, strlen(text), name, directory, set_count, sets, scene);
+}
+
+ruga_status ruga_scene_read_settings(const char* text, const char* name, ruga_scene* scene) {
+    return read_text(text, strlen(text), name, NULL, 0, NULL, scene);
 }
 
 // The whole file; one byte more than is allowed is enough to know that there is too much.
