@@ -29,6 +29,7 @@ typedef struct job {
     ruga_result_reader* reader;
     ruga_panels* panels;
     ruga_panel* panel;
+    double* wrinkle[3]; // [T] of measure_frames
 } job;
 
 static ruga_status add_series(job* j, const char* name, double** y) {
@@ -131,57 +132,65 @@ static ruga_status read_fields(job* j, const field* fields, bool sum) {
 
 // ---- wrinkles ------------------------------------------------------------------------------------------
 
-static ruga_status measure_frames(job* j, ruga_measure* measure, bool amplitude, double* position,
-                                  double* embedded) {
-    double *y, *fft = NULL;
-    bool flat = false;
-    RUGA_TRY(add_series(j, amplitude ? "amplitude" : "wavelength", &y));
-    if (!amplitude) {
-        RUGA_TRY(add_series(j, "by Fourier transform", &fft));
-    }
-    for (int frame = 0; frame < j->panels->frame_count; frame++) {
-        ruga_measured m;
-        RUGA_TRY(ruga_result_read_frame(j->reader, frame, NULL, position, embedded, NULL));
-        RUGA_TRY(ruga_measure_frame(measure, position, embedded, &m));
-        y[frame] = 1e3 * m.amplitude;
-        if (fft) {
-            // Where there is no wrinkle to speak of, its length is that of the noise.
-            bool seen = m.amplitude > 1e-6 * ruga_result_reader_header(j->reader)->wavelength;
-            y[frame] = seen && m.wavelength > 0 ? 1e3 * m.wavelength : NAN;
-            fft[frame] = seen && m.wavelength_fft > 0 ? 1e3 * m.wavelength_fft : NAN;
-            flat = flat || isfinite(fft[frame]);
-        }
-    }
-    if (fft && !flat) {
-        ruga_release(fft);
-        j->panel->series_count--;
-    }
-    return RUGA_OK;
-}
-
-static ruga_status read_wrinkles(job* j, bool amplitude) {
+// Wavelength, that by Fourier transform, and amplitude of every frame, mm; once for all panels.
+static ruga_status measure_frames(job* j) {
     const ruga_result_header* header = ruga_result_reader_header(j->reader);
     const ruga_mesh* mesh = ruga_result_mesh(j->reader);
     double *position = NULL, *embedded = NULL;
     ruga_measure* measure = NULL;
     ruga_status status = RUGA_OK;
-    if (!ruga_result_has_interior(j->reader)) {
+    if (j->wrinkle[0] || !ruga_result_has_interior(j->reader)) {
         return RUGA_OK;
+    }
+    for (int k = 0; k < 3; k++) {
+        RUGA_TRY_DONE(RUGA_NEW(j->wrinkle[k], j->panels->frame_count));
     }
     RUGA_TRY_DONE(RUGA_NEW(position, 3 * (size_t)mesh->vertex_count));
     RUGA_TRY_DONE(RUGA_NEW(embedded, 3 * (size_t)mesh->vertex_count));
-    RUGA_TRY_DONE(ruga_measure_create_local(mesh, header->wavelength, header->vertex_wavelength, header->seed,
-                                            &measure));
-    RUGA_TRY_DONE(measure_frames(j, measure, amplitude, position, embedded));
-    if (!amplitude) {
-        j->panel->reference = 1e3 * header->wavelength;
-        j->panel->reference_name = "predicted";
+    RUGA_TRY_DONE(
+        ruga_measure_create_local(mesh, header->wavelength, header->vertex_wavelength, header->seed, &measure));
+    for (int frame = 0; frame < j->panels->frame_count; frame++) {
+        ruga_measured m;
+        RUGA_TRY_DONE(ruga_result_read_frame(j->reader, frame, NULL, position, embedded, NULL));
+        RUGA_TRY_DONE(ruga_measure_frame(measure, position, embedded, &m));
+        // Where there is no wrinkle to speak of, its length is that of the noise.
+        bool seen = m.amplitude > 1e-6 * header->wavelength;
+        j->wrinkle[0][frame] = seen && m.wavelength > 0 ? 1e3 * m.wavelength : NAN;
+        j->wrinkle[1][frame] = seen && m.wavelength_fft > 0 ? 1e3 * m.wavelength_fft : NAN;
+        j->wrinkle[2][frame] = 1e3 * m.amplitude;
     }
 done:
     ruga_measure_destroy(&measure);
     ruga_release(position);
     ruga_release(embedded);
     return status;
+}
+
+static ruga_status add_wrinkle(job* j, int which, const char* name) {
+    double* y;
+    bool any = false;
+    for (int frame = 0; frame < j->panels->frame_count; frame++) {
+        any = any || isfinite(j->wrinkle[which][frame]);
+    }
+    if (any) {
+        RUGA_TRY(add_series(j, name, &y));
+        memcpy(y, j->wrinkle[which], (size_t)j->panels->frame_count * sizeof *y);
+    }
+    return RUGA_OK;
+}
+
+static ruga_status read_wrinkles(job* j, bool amplitude) {
+    RUGA_TRY(measure_frames(j));
+    if (!j->wrinkle[2]) {
+        return RUGA_OK;
+    }
+    if (amplitude) {
+        return add_wrinkle(j, 2, "amplitude");
+    }
+    j->panel->reference = 1e3 * ruga_result_reader_header(j->reader)->wavelength;
+    j->panel->reference_name = "predicted";
+    RUGA_TRY(add_wrinkle(j, 0, "wavelength"));
+    return add_wrinkle(j, 1, "by Fourier transform");
 }
 
 // ---- creases and handles -------------------------------------------------------------------------------
@@ -361,7 +370,11 @@ ruga_status ruga_panels_read(const char* path, ruga_result_reader* reader, const
     for (int frame = 0; frame < panels->frame_count; frame++) {
         RUGA_TRY(ruga_result_read_frame(reader, frame, &panels->time[frame], NULL, NULL, NULL));
     }
-    return what ? read_named(&j, what) : read_all(&j);
+    ruga_status status = what ? read_named(&j, what) : read_all(&j);
+    for (int k = 0; k < 3; k++) {
+        ruga_release(j.wrinkle[k]);
+    }
+    return status;
 }
 
 void ruga_panels_clear(ruga_panels* panels) {
