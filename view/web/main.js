@@ -62,11 +62,12 @@ class Skin {
     this.scene = new Scene();
     this.scene.background = new Color(0xe4e2de);
     this.scene.add(this.mesh, this.lines, new HemisphereLight(0xeef2f8, 0x8a7f74, 1.7), new AmbientLight(0xffffff, 0.15));
-    this.key = new DirectionalLight(0xfff4e6, 4.2);
+    this.key = new DirectionalLight(0xfff4e6);
     this.scene.add(this.key, this.key.target);
   }
 
   show(places, values) {
+    this.key.intensity = values ? 2.6 : 4.2;
     setPositions(this.geometry, places);
     const color = this.geometry.attributes.color;
     for (let v = 0; v < meta.vertices; v++) {
@@ -210,6 +211,7 @@ function start(index, skins, wrinkled, embedded, values) {
     byId("right").style.display = byId("both").checked ? "block" : "none";
     byId("right").style.left = "calc(50% + 12px)";
     resize();
+    home();
     show(frame);
   };
   addEventListener("keydown", (e) => {
