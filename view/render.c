@@ -39,7 +39,7 @@ typedef struct surface {
 // The mean of a pixel's samples. Light and gloss are kept apart from the tint for the smoothing.
 typedef struct pixel_light {
     float tint[3], light[3], gloss[3], n[3], distance, covered;
-    bool mixed; // of several surfaces: `light` is then the finished sum
+    bool mixed; // of several surfaces: `light` is then the mean of developed colours
     unsigned char kind;
 } pixel_light;
 
@@ -50,8 +50,9 @@ typedef struct scene {
     double* normal; // [F][3][3] at the corners of each face
     ruga_ray_scene* rays;
     ruga_camera camera;
-    double key[3]; // direction to the light
-    double near;   // m, that rays start off a surface
+    double zenith[3]; // where the sky is brightest
+    double key[3];    // direction to the light
+    double near;      // m, that rays start off a surface
     double key_color[3], sky_color[3], clay[3];
     double middle[3];   // on the floor, under the object
     pixel_light* pixel; // [height][width]
@@ -135,16 +136,18 @@ static void set_camera(scene* s) {
     ruga_add_scaled(c->ground - ruga_dot(s->middle, c->axis), c->axis, s->middle);
 }
 
-// From the left and low enough to graze the wrinkles. Values are shown under white light.
+// From the left and low enough to graze the wrinkles; from below where the camera looks from under the floor.
+// Values are shown under white light.
 static void set_lights(scene* s) {
     static const double warm[3] = {3.1, 2.9, 2.65}, cool[3] = {0.66, 0.70, 0.76},
                         neutral[3] = {2.9, 2.9, 2.9}, grey[3] = {0.9, 0.9, 0.9},
                         clay[3] = {0.46, 0.315, 0.235};
     const ruga_camera* c = &s->camera;
     bool values = s->def->scalar.value || s->def->place || s->def->lines.value;
-    double right = ruga_norm(c->right);
+    double right = ruga_norm(c->right), sign = ruga_dot(c->eye, c->axis) < c->ground ? -1 : 1;
     for (int k = 0; k < 3; k++) {
-        s->key[k] = -0.85 * c->right[k] / right + 0.45 * c->axis[k] + 0.2 * c->forward[k];
+        s->zenith[k] = sign * c->axis[k];
+        s->key[k] = -0.85 * c->right[k] / right + 0.45 * s->zenith[k] + 0.2 * c->forward[k];
     }
     (void)ruga_normalize(s->key);
     memcpy(s->key_color, values ? neutral : warm, sizeof warm);
@@ -269,7 +272,7 @@ static void see(const scene* s, const ruga_ray* ray, surface* seen) {
 
 // Light of the sky from direction d: brighter above, and below the horizon what the floor sends back.
 static double sky_light(const scene* s, const double d[3]) {
-    double height = ruga_dot(d, s->camera.axis);
+    double height = ruga_dot(d, s->zenith);
     return height > 0 ? 0.62 + 0.5 * height : 0.62 + 0.32 * fmax(height, -1);
 }
 
@@ -330,7 +333,7 @@ typedef struct sample_light {
 
 static void shade(const scene* s, const surface* seen, const ruga_ray* ray, double u, double v, int place,
                   const double shift[2], ruga_random* random, sample_light* out) {
-    double open[3], floor_light[3], key_facing = fmax(ruga_dot(s->key, s->camera.axis), 0);
+    double open[3], floor_light[3], key_facing = fmax(ruga_dot(s->key, s->zenith), 0);
     *out = (sample_light){.tint = {0, 0, 0}};
     for (int k = 0; k < 3; k++) {
         floor_light[k] = 0.62 * (s->key_color[k] * key_facing + s->sky_color[k] * 0.95);
@@ -365,6 +368,15 @@ static void shade(const scene* s, const surface* seen, const ruga_ray* ray, doub
 
 // ---- a pixel -------------------------------------------------------------------------------------------
 
+// Bright values are held together, dark and middle ones nearly kept: L (1 + L / 9) / (1 + L) of the
+// brightness L.
+static void develop(double light[3]) {
+    double bright = 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
+    for (int k = 0; k < 3; k++) {
+        light[k] *= (1 + bright / 9) / (1 + bright);
+    }
+}
+
 typedef struct pixel_sum {
     sample_light sum;
     double finished[3], n[3], distance;
@@ -382,6 +394,7 @@ static void take_samples(const scene* s, int row, int column, int per_axis, ruga
         ruga_ray ray = {.origin = {c->eye[0], c->eye[1], c->eye[2]}, .far = INFINITY};
         surface seen;
         sample_light light;
+        double all[3];
         for (int i = 0; i < 3; i++) {
             ray.direction[i] = c->forward[i] + u * c->right[i] + v * c->up[i];
         }
@@ -397,8 +410,10 @@ static void take_samples(const scene* s, int row, int column, int per_axis, ruga
             p->sum.tint[i] += light.tint[i];
             p->sum.light[i] += light.light[i];
             p->sum.gloss[i] += light.gloss[i];
-            p->finished[i] += light.tint[i] * light.light[i] + light.gloss[i];
+            all[i] = light.tint[i] * light.light[i] + light.gloss[i];
         }
+        develop(all);
+        ruga_add_scaled(1, all, p->finished);
     }
 }
 
@@ -489,20 +504,20 @@ static void smooth_rows(int begin, int end, int chunk, void* context) {
     }
 }
 
-// Bright values are held together, dark and middle ones nearly kept: L (1 + L / 9) / (1 + L) of the
-// brightness L.
 static void develop_rows(int begin, int end, int chunk, void* context) {
     const scene* s = context;
     (void)chunk;
     for (size_t p = (size_t)begin * (size_t)s->camera.width; p < (size_t)end * (size_t)s->camera.width; p++) {
         const pixel_light* a = s->pixel + p;
-        double light[3], bright;
+        double light[3];
         for (int c = 0; c < 3; c++) {
             light[c] = a->mixed ? (double)a->light[c] : (double)(a->tint[c] * a->light[c] + a->gloss[c]);
         }
-        bright = 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
+        if (!a->mixed) {
+            develop(light);
+        }
         for (int c = 0; c < 3; c++) {
-            s->picture->pixel[3 * p + (size_t)c] = ruga_srgb(light[c] * (1 + bright / 9) / (1 + bright));
+            s->picture->pixel[3 * p + (size_t)c] = ruga_srgb(light[c]);
         }
         s->picture->coverage[p] = (unsigned char)(255 * a->covered + 0.5F);
     }
