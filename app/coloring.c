@@ -224,33 +224,39 @@ static ruga_status mark_segments(ruga_coloring* c, const double* segments) {
     return status;
 }
 
-static ruga_status choose_creases(ruga_coloring* c) {
-    size_t size[2], angles[2];
+// Creases of the result, where it has some.
+static ruga_status read_segments(ruga_coloring* c) {
+    size_t size[2];
     double* segments;
     int corners = 3 * ruga_result_mesh(c->reader)->triangle_count;
     RUGA_TRY(ruga_result_read_optional(c->reader, "/creases/segments", 2, size, &segments));
     if (!segments || size[1] != 2 || size[0] == 0) {
         ruga_release(segments);
-        return ruga_fail(RUGA_BAD_INPUT, "--color creases: %s has no creases", c->path);
+        return RUGA_OK;
     }
     c->line_count = (int)size[0];
-    ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(RUGA_NEW(c->line, corners));
-    for (int i = 0; i < corners; i++) {
+    ruga_status status = RUGA_NEW(c->line, corners);
+    for (int i = 0; i < corners && status == RUGA_OK; i++) {
         c->line[i] = -1;
     }
-    RUGA_TRY_DONE(mark_segments(c, segments));
-    RUGA_TRY_DONE(ruga_result_read_optional(c->reader, "/creases/angle", 2, angles, &c->line_angle));
-    if (c->line_angle && angles[1] != size[0]) {
-        status = ruga_fail(RUGA_BAD_INPUT, "%s: /creases/angle has %zu columns for %zu segments", c->path,
-                           angles[1], size[0]);
-        goto done;
-    }
-    c->frame_count = c->line_angle ? (int)angles[0] : 0;
-    c->scale = (ruga_scale){.name = "fold angle, deg (valley > 0)", .unit = RUGA_PI / 180};
-done:
+    status = status == RUGA_OK ? mark_segments(c, segments) : status;
     ruga_release(segments);
     return status;
+}
+
+static ruga_status choose_creases(ruga_coloring* c) {
+    size_t size[2];
+    if (!c->line) {
+        return ruga_fail(RUGA_BAD_INPUT, "--color creases: %s has no creases", c->path);
+    }
+    RUGA_TRY(ruga_result_read_optional(c->reader, "/creases/angle", 2, size, &c->line_angle));
+    if (c->line_angle && size[1] != (size_t)c->line_count) {
+        return ruga_fail(RUGA_BAD_INPUT, "%s: /creases/angle has %zu columns for %d segments", c->path,
+                         size[1], c->line_count);
+    }
+    c->frame_count = c->line_angle ? (int)size[0] : 0;
+    c->scale = (ruga_scale){.name = "fold angle, deg (valley > 0)", .unit = RUGA_PI / 180};
+    return RUGA_OK;
 }
 
 // ---- life ----------------------------------------------------------------------------------------------
@@ -307,6 +313,7 @@ ruga_status ruga_coloring_create(const char* path, ruga_result_reader* reader, r
     RUGA_TRY(RUGA_NEW(c->place, vertices));
     RUGA_TRY(RUGA_NEW(c->position, 3 * (size_t)vertices));
     RUGA_TRY(RUGA_NEW(c->embedded, 3 * (size_t)vertices));
+    RUGA_TRY(read_segments(c));
     switch (kind) {
     case RUGA_COLORING_CLAY:
         return RUGA_OK;
@@ -407,8 +414,9 @@ ruga_status ruga_coloring_set(ruga_coloring* c, int frame, const double* positio
     RUGA_TRY(compute(c, frame, position, embedded, &values, &count));
     ruga_scale scale = c->scale;
     scale.value = values;
-    if (c->kind == RUGA_COLORING_CREASES) {
-        def->line = c->line;
+    def->line = c->line;
+    def->draw_lines = c->kind == RUGA_COLORING_CREASES;
+    if (def->draw_lines) {
         def->lines = scale;
     } else {
         def->scalar = scale;

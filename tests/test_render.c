@@ -325,6 +325,7 @@ static void values_lines_and_places_are_seen(void** state) {
     ruga_picture places = render(&mesh, &def);
     def.place = NULL;
     def.line = line; // every edge
+    def.draw_lines = true;
     ruga_picture lines = render(&mesh, &def);
     const unsigned char *left = scalar.pixel + 3 * (60 * 120 + 20),
                         *right = scalar.pixel + 3 * (60 * 120 + 100);
@@ -344,6 +345,42 @@ static void values_lines_and_places_are_seen(void** state) {
     ruga_picture_clear(&lines);
     test_free(value);
     test_free(place);
+    test_free(line);
+    ruga_mesh_clear(&mesh);
+}
+
+// A ridge that is bent by 20 degrees is smooth, or, where it is a crease, two flat sides.
+static void surface_is_not_smoothed_across_a_crease(void** state) {
+    (void)state;
+    ruga_mesh mesh;
+    assert_ok(ruga_mesh_make(
+        &(ruga_make_def){
+            .shape = RUGA_SHAPE_SHEET, .size = {0.2, 0.2}, .cells = {4, 4}, .pattern = RUGA_PATTERN_DIAGONAL},
+        &mesh));
+    int* line = test_calloc(3 * (size_t)mesh.triangle_count, sizeof *line);
+    for (int v = 0; v < mesh.vertex_count; v++) {
+        mesh.position[3 * v + 2] = -tan(10 * RUGA_PI / 180) * fabs(mesh.position[3 * v]);
+    }
+    for (int c = 0; c < 3 * mesh.triangle_count; c++) {
+        int a = mesh.triangle[c], b = mesh.triangle[c % 3 == 2 ? c - 2 : c + 1];
+        line[c] = fabs(mesh.position[3 * a]) < 1e-9 && fabs(mesh.position[3 * b]) < 1e-9 ? 0 : -1;
+    }
+    ruga_render_def def = small_def(160, 160);
+    def.elevation = RUGA_PI / 2;
+    def.azimuth = -RUGA_PI / 2;
+    double step[2];
+    for (int k = 0; k < 2; k++) {
+        def.line = k == 1 ? line : NULL;
+        ruga_picture picture = render(&mesh, &def);
+        double mean[2] = {0, 0};
+        for (int y = 60; y < 100; y++) {
+            mean[0] += brightness(&picture, 76, y) / 40;
+            mean[1] += brightness(&picture, 84, y) / 40;
+        }
+        step[k] = mean[0] - mean[1];
+        ruga_picture_clear(&picture);
+    }
+    assert_true(step[1] > 0.06 && step[0] < 0.5 * step[1]);
     test_free(line);
     ruga_mesh_clear(&mesh);
 }
@@ -433,6 +470,7 @@ int main(void) {
         cmocka_unit_test(scale_bar_is_as_long_as_it_says),
         cmocka_unit_test(legend_shows_the_colours_of_its_numbers),
         cmocka_unit_test(values_lines_and_places_are_seen),
+        cmocka_unit_test(surface_is_not_smoothed_across_a_crease),
         cmocka_unit_test(equal_steps_of_a_value_look_equally_large),
         cmocka_unit_test(what_cannot_be_drawn_is_refused),
         cmocka_unit_test(memory_that_runs_out_is_told),

@@ -17,6 +17,7 @@
 #include "core/vec3.h"
 #include "view/legend.h"
 #include "view/light.h"
+#include "view/normals.h"
 
 #include <png.h>
 
@@ -73,48 +74,6 @@ ruga_render_def ruga_default_render_def(void) {
 }
 
 // ---- setting up ----------------------------------------------------------------------------------------
-
-// Corner normals: the mean of the faces around the vertex that are within 50 degrees of the corner's own, so
-// that sharp rims stay sharp and all else is smooth.
-static ruga_status build_normals(scene* s) {
-    ruga_status status = RUGA_OK;
-    int vertices = s->mesh->vertex_count, triangles = s->mesh->triangle_count, *start = NULL, *face = NULL;
-    const int* t = s->mesh->triangle;
-    double* flat = NULL;
-    RUGA_TRY_DONE(RUGA_NEW_ZERO(start, vertices + 2));
-    RUGA_TRY_DONE(RUGA_NEW(face, 3 * (size_t)triangles));
-    RUGA_TRY_DONE(RUGA_NEW(flat, 3 * (size_t)triangles));
-    RUGA_TRY_DONE(RUGA_NEW_ZERO(s->normal, 9 * (size_t)triangles));
-    for (int c = 0; c < 3 * triangles; c++) {
-        start[t[c] + 2]++;
-    }
-    for (int v = 0; v < vertices; v++) {
-        start[v + 2] += start[v + 1];
-    }
-    for (int c = 0; c < 3 * triangles; c++) {
-        face[start[t[c] + 1]++] = c / 3;
-    }
-    for (int f = 0; f < triangles; f++) {
-        ruga_triangle_normal(s->position + 3 * (size_t)t[3 * f], s->position + 3 * (size_t)t[3 * f + 1],
-                             s->position + 3 * (size_t)t[3 * f + 2], flat + 3 * (size_t)f);
-    }
-    for (int c = 0; c < 3 * triangles; c++) {
-        const double* own = flat + 3 * (size_t)(c / 3);
-        double* n = s->normal + 3 * (size_t)c;
-        for (int k = start[t[c]]; k < start[t[c] + 1]; k++) {
-            const double* other = flat + 3 * (size_t)face[k];
-            if (ruga_dot(own, other) >= cos(50 * RUGA_PI / 180) * ruga_norm(own) * ruga_norm(other)) {
-                ruga_add_scaled(1, other, n);
-            }
-        }
-        (void)ruga_normalize(n);
-    }
-done:
-    ruga_release(start);
-    ruga_release(face);
-    ruga_release(flat);
-    return status;
-}
 
 static void set_camera(scene* s) {
     const ruga_render_def* def = s->def;
@@ -178,12 +137,13 @@ static void draw_lines(const scene* s, const ruga_ray_hit* hit, const double x[3
     const ruga_render_def* def = s->def;
     const int* t = s->mesh->triangle + 3 * (size_t)hit->triangle;
     double pixel[2], thin = fmax(0.45, 0.00055 * def->height), wide = fmax(1, 0.0032 * def->height);
-    if (!def->wireframe && !def->line) {
+    bool lines = def->line && def->draw_lines;
+    if (!def->wireframe && !lines) {
         return;
     }
     ruga_camera_project(&s->camera, x, pixel);
     for (int k = 0; k < 3; k++) {
-        int line = def->line ? def->line[3 * (size_t)hit->triangle + (size_t)k] : -1;
+        int line = lines ? def->line[3 * (size_t)hit->triangle + (size_t)k] : -1;
         if (line < 0 && !def->wireframe) {
             continue;
         }
@@ -546,7 +506,8 @@ static ruga_status draw(scene* s) {
     RUGA_TRY(RUGA_NEW(s->picture->coverage, pixels));
     RUGA_TRY(RUGA_NEW(s->pixel, pixels));
     RUGA_TRY(RUGA_NEW(s->spare, pixels));
-    RUGA_TRY(build_normals(s));
+    RUGA_TRY(RUGA_NEW(s->normal, 9 * (size_t)s->mesh->triangle_count));
+    RUGA_TRY(ruga_corner_normals(s->mesh, s->position, s->def->line, s->normal));
     RUGA_TRY(ruga_ray_scene_create(s->mesh->vertex_count, s->position, s->mesh->triangle_count,
                                    s->mesh->triangle, &s->rays));
     set_camera(s);

@@ -32,8 +32,11 @@ typedef struct ruga_render_def {
     ruga_scale scalar; // [V]
     const int* place;  // [V] neighbours of another number get another colour; NULL = none
     const char* note;  // a line of text in the legend's place, or NULL
-    const int* line;   // [F][3] line along the edge from corner k to k + 1, or -1; NULL = no lines
-    ruga_scale lines;  // [number of lines]; without values the lines are dark
+    // [F][3] number of the crease along the edge from corner k to k + 1, or -1; NULL = none. The surface is
+    // not smoothed across creases.
+    const int* line;
+    bool draw_lines;
+    ruga_scale lines; // [number of creases] their colours; without values they are dark
 } ruga_render_def;
 
 ruga_render_def ruga_default_render_def(void);
