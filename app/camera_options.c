@@ -14,19 +14,14 @@
 
 static const double DEGREE = RUGA_PI / 180;
 
-// A gravity along an axis, or nearly, in a scene that can be read.
-static int up_of_scene(const char* scene_text) {
-    ruga_scene scene;
-    int up = 2;
-    if (!scene_text || ruga_scene_read_settings(scene_text, "scene", &scene) != RUGA_OK) {
-        return up;
+void ruga_camera_up(const double gravity[3], double up[3]) {
+    for (int axis = 0; axis < 3; axis++) {
+        if (fabs(gravity[axis]) > 0.9 * ruga_norm(gravity)) {
+            for (int k = 0; k < 3; k++) {
+                up[k] = k != axis ? 0 : gravity[k] < 0 ? 1 : -1;
+            }
+        }
     }
-    const double* g = scene.def.gravity;
-    for (int k = 0; k < 3; k++) {
-        up = -g[k] > 0.9 * ruga_norm(g) && ruga_norm(g) > 0 ? k : up;
-    }
-    ruga_scene_clear(&scene);
-    return up;
 }
 
 static ruga_status read_pair(const char* text, ruga_render_def* def) {
@@ -65,9 +60,14 @@ static ruga_status read_camera(const char* text, ruga_render_def* def) {
 
 ruga_status ruga_camera_options(const ruga_arguments* arguments, const char* scene_text,
                                 ruga_render_def* def) {
-    int up = ruga_given(arguments, "--up") ? 2 : up_of_scene(scene_text);
+    ruga_scene scene;
+    if (scene_text && ruga_scene_read_settings(scene_text, "scene", &scene) == RUGA_OK) {
+        ruga_camera_up(scene.def.gravity, def->up);
+        ruga_scene_clear(&scene);
+    }
+    int up = -1;
     RUGA_TRY(ruga_option_choice(arguments, "--up", "x|y|z", &up));
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3 && up >= 0; k++) {
         def->up[k] = k == up;
     }
     const char* camera = ruga_value(arguments, "--camera");

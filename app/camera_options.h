@@ -19,6 +19,9 @@
         "--elevation", NULL, "ANGLE", "how far above the horizon the camera stands [34 deg]", false          \
     }
 
+// Up is against a gravity along an axis; otherwise `up` stays as it is.
+void ruga_camera_up(const double gravity[3], double up[3]);
+
 // Sets what was given. `scene_text`, or NULL: its gravity says which way is up.
 ruga_status ruga_camera_options(const ruga_arguments* arguments, const char* scene_text,
                                 ruga_render_def* def);

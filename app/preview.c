@@ -3,12 +3,12 @@
 #define _POSIX_C_SOURCE 200809L
 #include "app/preview.h"
 
+#include "app/camera_options.h"
 #include "app/console.h"
 #include "app/frames.h"
 #include "core/memory.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -35,14 +35,7 @@ ruga_status ruga_preview_start(const char* folder, const ruga_scene* scene, ruga
     preview->def.width = WIDTH;
     preview->def.height = HEIGHT;
     preview->def.fit = 0.75; // room for what comes
-    for (int k = 0; k < 3; k++) {
-        const double* g = scene->def.gravity;
-        bool along = fabs(g[k]) > 0.9 * sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-        if (along) {
-            memset(preview->def.up, 0, sizeof preview->def.up);
-            preview->def.up[k] = g[k] > 0 ? -1 : 1;
-        }
-    }
+    ruga_camera_up(scene->def.gravity, preview->def.up);
     return RUGA_OK;
 }
 

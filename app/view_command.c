@@ -210,7 +210,8 @@ static ruga_status make_json(job* j, char** text) {
                   1e3 * j->largest, "colors", colors_json(), "time", numbers_json(j, j->panels.time),
                   "outcome", outcome, "panels", panels_json(j), "facts", facts_json(j));
     // A scene that is not UTF-8 is left out rather than making the whole page fail.
-    (void)json_object_set_new(object, "scene", json_string(scene) ? json_string(scene) : json_string(""));
+    json_t* scene_json = json_string(scene);
+    (void)json_object_set_new(object, "scene", scene_json ? scene_json : json_string(""));
     *text = object ? json_dumps(object, JSON_COMPACT | JSON_ESCAPE_SLASH) : NULL;
     json_decref(object);
     return *text ? RUGA_OK : ruga_fail(RUGA_NO_MEMORY, "out of memory while making the page");

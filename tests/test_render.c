@@ -7,12 +7,14 @@
 #include "tests/check.h"
 #include "tests/scarce_memory.h"
 
+#include "core/random.h"
 #include "core/vec3.h"
 #include "mesh/make.h"
 #include "ruga/ruga.h"
 #include "view/legend.h"
 #include "view/light.h"
 #include "view/movie.h"
+#include "view/page.h"
 #include "view/render.h"
 
 #include <string.h>
@@ -409,6 +411,28 @@ static void equal_steps_of_a_value_look_equally_large(void** state) {
     }
 }
 
+// ---- page ----------------------------------------------------------------------------------------------
+
+static void page_holds_positions_to_half_a_step(void** state) {
+    (void)state;
+    enum { N = 3 * 50, FRAMES = 4 };
+    const double low[3] = {-1, 5, 0}, step = 2e-5;
+    uint16_t place[N] = {0}, read[N] = {0};
+    ruga_random random = {.state = 3};
+    for (int t = 0; t < FRAMES; t++) {
+        double position[N];
+        unsigned char bytes[2 * N];
+        for (int i = 0; i < N; i++) {
+            position[i] = low[i % 3] + 65535 * step * (i < 3 ? (t % 2) : ruga_random_uniform(&random));
+        }
+        ruga_page_pack(N, position, low, step, place, bytes);
+        for (int i = 0; i < N; i++) {
+            read[i] = (uint16_t)(read[i] + bytes[i] + 256 * bytes[N + i]);
+            assert_near(low[i % 3] + step * read[i], position[i], 0.5001 * step);
+        }
+    }
+}
+
 // ---- trouble -------------------------------------------------------------------------------------------
 
 static void what_cannot_be_drawn_is_refused(void** state) {
@@ -472,6 +496,7 @@ int main(void) {
         cmocka_unit_test(values_lines_and_places_are_seen),
         cmocka_unit_test(surface_is_not_smoothed_across_a_crease),
         cmocka_unit_test(equal_steps_of_a_value_look_equally_large),
+        cmocka_unit_test(page_holds_positions_to_half_a_step),
         cmocka_unit_test(what_cannot_be_drawn_is_refused),
         cmocka_unit_test(memory_that_runs_out_is_told),
         cmocka_unit_test(film_without_ffmpeg_is_refused_with_a_sentence),
