@@ -771,19 +771,6 @@ static void every_failing_allocation_is_survived(void** state) {
     print_message("%d allocations\n", k - 1);
 }
 
-static void settings_are_read_without_the_mesh(void** state) {
-    (void)state;
-    static const char text[] = "mesh: {file: gone.obj, unit: mm}\nskin: {thickness: 3 mm, young: 7 MPa}\n"
-                               "interior: {young: 0.1 MPa}\nlattice: {cells: 9}\ngravity: [0, -9.81, 0]\n";
-    ruga_scene scene;
-    assert_status(ruga_scene_read_text(text, "scene.yaml", SCENES, 0, NULL, &scene), RUGA_BAD_INPUT);
-    assert_ok(ruga_scene_read_settings(text, "scene.yaml", &scene));
-    assert_true(scene.def.skin.young == 7e6 && scene.def.lattice.cells == 9 && scene.def.gravity[1] == -9.81);
-    assert_int_equal(scene.mesh.vertex_count, 0);
-    ruga_scene_clear(&scene);
-    assert_status(ruga_scene_read_settings("skin: {thicknes: 1 mm}", "scene.yaml", &scene), RUGA_BAD_INPUT);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(quantities_become_si),
@@ -807,7 +794,6 @@ int main(void) {
         cmocka_unit_test(reference_is_up_to_date),
         cmocka_unit_test(mutated_scenes_neither_crash_nor_leak),
         cmocka_unit_test(every_failing_allocation_is_survived),
-        cmocka_unit_test(settings_are_read_without_the_mesh),
     };
     return cmocka_run_group_tests_name("scene", tests, NULL, check_no_leak);
 }
