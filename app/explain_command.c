@@ -42,6 +42,8 @@ static ruga_status derive(const ruga_arguments* arguments, facts* f) {
     }
     if (def->keyframe_count > 0) {
         f->strain = ruga_motion_largest_compression(def->keyframe_count, def->keyframes);
+    } else if (f->model->follow.count > 0) {
+        f->strain = f->model->follow.compression;
     }
     RUGA_TRY(ruga_quantity(arguments, "--strain", "1", &f->strain));
     if (f->strain < 0 || f->strain >= 1) {

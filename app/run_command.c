@@ -143,6 +143,17 @@ static void warn_of_coarse_mesh(const job* j) {
     }
 }
 
+static void warn_of_loose_fit(const job* j) {
+    const ruga_follow* follow = &j->model->follow;
+    if (follow->count > 0 && follow->error > 0.02 * j->model->extent) {
+        ruga_warn(
+            j->arguments,
+            "the lattice follows the moving surface to within %.3g mm (root mean square); more lattice.cells "
+            "follow it closer",
+            1e3 * follow->error);
+    }
+}
+
 static ruga_status open_result(job* j) {
     const ruga_model* model = j->model;
     ruga_result_header header = {
@@ -203,6 +214,7 @@ static ruga_status simulate(job* j) {
     int frames = j->scene.def.frames;
     RUGA_TRY(ruga_model_create(&j->scene.def, &j->model));
     warn_of_coarse_mesh(j);
+    warn_of_loose_fit(j);
     ruga_warn_of_handles(j->arguments, j->model);
     RUGA_TRY(ruga_state_create(j->model, &j->state));
     RUGA_TRY(open_result(j));

@@ -26,8 +26,9 @@ static uint64_t hash_bytes(uint64_t hash, const char* bytes, size_t length) {
 static uint64_t hash_values(const ruga_scene_parts* parts) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (const ruga_scene_value* v = parts->first_value; v; v = v->next) {
-        // skin.vary itself stands there only where it has no entries, which have keys of their own.
-        if (strcmp(v->key, "time.frames") != 0 && strcmp(v->key, "skin.vary") != 0) {
+        // skin.vary and follow themselves stand there only where they have no keys of their own.
+        if (strcmp(v->key, "time.frames") != 0 && strcmp(v->key, "skin.vary") != 0 &&
+            strcmp(v->key, "follow") != 0) {
             hash = hash_bytes(hash, v->key, strlen(v->key) + 1);
             hash = hash_bytes(hash, v->value, strlen(v->value) + 1);
         }
@@ -76,6 +77,7 @@ static ruga_status build(ruga_yaml_node* root, ruga_pool* tree, const char* dire
     RUGA_TRY(ruga_scene_load_mesh(root, directory, scene));
     RUGA_TRY(ruga_scene_vary_skin(root, directory, scene));
     scene->hash = hash_arrays(scene->hash, &scene->def.skin);
+    RUGA_TRY(ruga_scene_follow_surface(root, directory, scene));
     scene->mesh_hash = ruga_mesh_hash(&scene->mesh);
     scene->def.mesh = ruga_mesh_as_def(&scene->mesh);
     return RUGA_OK;
@@ -159,6 +161,7 @@ done:
 void ruga_scene_clear(ruga_scene* scene) {
     ruga_scene_parts* parts = scene->storage;
     if (parts) {
+        ruga_scene_follow_clear(parts);
         ruga_pool_clear(&parts->pool);
     }
     ruga_release(parts);

@@ -266,7 +266,7 @@ ruga_status ruga_scene_reference(ruga_string* text) {
         "- `--set key.path=value` replaces or adds a value before anything is checked; entries of lists are "
         "numbered\n"
         "  from 0: `--set handles.0.press=\"5 kPa\"`.\n"
-        "- With `interior: none` there are no `lattice`, `coupling` and `prescribed`.\n"
+        "- With `interior: none` there are no `lattice`, `coupling`, `prescribed` and `follow`.\n"
         "- The scene's hash, which `--resume` compares, covers every value with its default in SI, but not\n"
         "  `time.frames`, comments, spelling or the order of keys.\n\n"
         "N stands for the number of an entry in a list.\n\n"

@@ -67,6 +67,12 @@ typedef struct ruga_scene_vary {
     ruga_scene_pair value[RUGA_VARY_VALUES];
 } ruga_scene_vary;
 
+// The follow section.
+typedef struct ruga_scene_follow {
+    char* file; // NULL = none
+    double rate, start, smoothness;
+} ruga_scene_follow;
+
 typedef struct ruga_key {
     const char* path; // "skin.thickness", "handles.N.region.box"
     ruga_key_kind kind;

@@ -67,8 +67,12 @@ static ruga_status check_numbers(const ruga_model_def* def) {
                      "between 0 and the number of vertices"));
     RUGA_TRY(require(c->radius >= 0 && isfinite(c->radius), "coupling.radius", c->radius, "0 or above"));
     RUGA_TRY(require(c->sigma >= 0 && isfinite(c->sigma), "coupling.sigma", c->sigma, "0 or above"));
-    RUGA_TRY(require(def->interior.motion != RUGA_INTERIOR_PRESCRIBED || def->keyframe_count > 0,
+    RUGA_TRY(require(def->interior.motion != RUGA_INTERIOR_PRESCRIBED || def->keyframe_count > 0 ||
+                         def->follow.sample_count > 0,
                      "the number of prescribed keyframes", def->keyframe_count, "1 or above"));
+    RUGA_TRY(require(def->follow.sample_count == 0 || def->keyframe_count == 0,
+                     "the number of prescribed keyframes", def->keyframe_count,
+                     "0 where a surface is followed"));
     for (int k = 1; k < def->keyframe_count; k++) {
         RUGA_TRY(require(def->keyframes[k].time > def->keyframes[k - 1].time, "prescribed time",
                          def->keyframes[k].time, "above that of the keyframe before"));
@@ -270,12 +274,18 @@ static ruga_status build_coupling(ruga_model* model) {
     return RUGA_OK;
 }
 
-static ruga_status build_interior(ruga_model* model) {
+static ruga_status build_interior(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(ruga_progress("building the lattice", 0));
     RUGA_TRY(ruga_lattice_create(&model->mesh, &model->connectivity, &model->lattice_def, &model->lattice));
     if (!ruga_model_is_prescribed(model)) {
         RUGA_TRY(ruga_rows_create(&model->lattice, &model->mesh, model->handle_count, model->handles,
                                   &model->rows));
+    }
+    if (ruga_model_is_prescribed(model) && def->follow.sample_count > 0) {
+        if (model->mesh.vertex_count != def->mesh.vertex_count) { // cut
+            return ruga_fail(RUGA_BAD_INPUT, "follow: a mesh that is cut by creases cannot follow a moving surface");
+        }
+        RUGA_TRY(ruga_follow_create(&model->lattice, &model->mesh, model->vertex_area, &def->follow, &model->follow));
     }
     return build_coupling(model);
 }
@@ -327,7 +337,7 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
     RUGA_TRY_DONE(ruga_loads_create(&model->mesh, &model->connectivity, model->handle_count, model->handles,
                                     &model->loads));
     if (model->has_interior) {
-        RUGA_TRY_DONE(build_interior(model));
+        RUGA_TRY_DONE(build_interior(def, model));
         if (model->skin.model == RUGA_SKIN_VOLUME) {
             RUGA_TRY_DONE(build_dense(model, def->lattice.depth));
         }
@@ -361,6 +371,7 @@ void ruga_model_destroy(ruga_model** model_pointer) {
     ruga_clusters_clear(&model->clusters);
     ruga_rows_clear(&model->rows);
     ruga_dense_clear(&model->dense);
+    ruga_follow_clear(&model->follow);
     ruga_lattice_clear(&model->lattice);
     ruga_connectivity_clear(&model->connectivity);
     ruga_mesh_clear(&model->mesh);
