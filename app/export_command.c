@@ -15,8 +15,10 @@
 
 enum { SUBDIVISIONS_MAX = 6 };
 
+static const char formats[] = "obj|ply|gltf|pc2|mdd|usda|xdmf|fold";
+
 static const ruga_option options[] = {
-    {"--format", NULL, "NAME", "obj or ply [by the file's ending]", false},
+    {"--format", NULL, formats, "obj or ply [by the file's ending]", false},
     {"--frames", NULL, "A:B", "frames, both ends included [all for a name with %04d, otherwise the last]",
      false},
     {"--frame", "-f", "K", "one frame, counted from 0", false},
@@ -26,7 +28,6 @@ static const ruga_option options[] = {
     {0},
 };
 
-static const char formats[] = "obj|ply|gltf|pc2|mdd|usda|xdmf|fold";
 enum { FORMAT_OBJ, FORMAT_PLY, FORMAT_COUNT_NOW };
 
 typedef struct job {

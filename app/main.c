@@ -13,7 +13,7 @@ const ruga_command* const ruga_commands[] = {
     &ruga_make_command,    &ruga_check_command,  &ruga_remesh_command,
     &ruga_explain_command, &ruga_run_command,    &ruga_measure_command,
     &ruga_export_command,  &ruga_render_command, &ruga_validate_command,
-    &ruga_sweep_command,
+    &ruga_sweep_command,   &ruga_manual_command,
     NULL,
 };
 

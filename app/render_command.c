@@ -15,16 +15,18 @@ enum { PIXELS_MAX = 16384, COLOR_CLAY = 0, COLOR_DISPLACEMENT = 1 }; // further 
 static const double DEGREE = 0.017453292519943295;
 static const double ELEVATION_MAX = 1.5533; // 89 deg: straight from above, no side of the picture is up
 
+static const char colors[] = "clay|displacement|thickness|young|wavelength", axes[] = "x|y|z";
+
 static const ruga_option options[] = {
     {"--frame", "-f", "K", "the frame, counted from 0 [the last]", false},
     {"--frames", NULL, "A:B", "frames, both ends included", false},
     {"--width", NULL, "PIXELS", "width of the picture [1280]", false},
     {"--height", NULL, "PIXELS", "height of the picture [960]", false},
-    {"--color", NULL, "NAME",
+    {"--color", NULL, colors,
      "clay; displacement: how far the skin stands off the interior; thickness, young or\n"
      "wavelength of a skin that varies [clay]",
      false},
-    {"--up", NULL, "AXIS", "the axis that points up: x, y or z [z]", false},
+    {"--up", NULL, axes, "the axis that points up [z]", false},
     {"--azimuth", NULL, "ANGLE", "where the camera stands, turned about the up axis [-63 deg]", false},
     {"--elevation", NULL, "ANGLE", "how far above the horizon the camera stands [34 deg]", false},
     {"--output", "-o", "PNG", "the file to write; for several frames a name with %04d in it", false},
@@ -91,7 +93,7 @@ static ruga_status choose_value(job* j, int color) {
 
 static ruga_status choose_camera(job* j) {
     int up = 2;
-    RUGA_TRY(ruga_option_choice(j->arguments, "--up", "x|y|z", &up));
+    RUGA_TRY(ruga_option_choice(j->arguments, "--up", axes, &up));
     for (int i = 0; i < 3; i++) {
         j->def.up[i] = i == up;
     }
@@ -109,8 +111,7 @@ static ruga_status prepare(job* j, const ruga_frame_range* range) {
     RUGA_TRY(choose_camera(j));
     RUGA_TRY(ruga_integer(j->arguments, "--width", 16, PIXELS_MAX, &j->def.width));
     RUGA_TRY(ruga_integer(j->arguments, "--height", 16, PIXELS_MAX, &j->def.height));
-    RUGA_TRY(
-        ruga_option_choice(j->arguments, "--color", "clay|displacement|thickness|young|wavelength", &color));
+    RUGA_TRY(ruga_option_choice(j->arguments, "--color", colors, &color));
     const ruga_mesh* mesh = ruga_result_mesh(j->reader);
     const ruga_result_header* header = ruga_result_reader_header(j->reader);
     RUGA_TRY(RUGA_NEW(j->position, 3 * (size_t)mesh->vertex_count));
@@ -166,7 +167,8 @@ done:
 const ruga_command ruga_render_command = {
     .name = "render",
     .operand = "RESULT",
-    .usage = "[--frame K | --frames A:B] [--width W] [--height H] [--color NAME] [--up AXIS] -o PNG_OR_PATTERN",
+    .usage =
+        "[--frame K | --frames A:B] [--width W] [--height H] [--color NAME] [--up AXIS] -o PNG_OR_PATTERN",
     .summary = "draw frames of a result as PNG pictures",
     .about = "Draws the skin. For several frames the file's name holds a place for the number, such as "
              "f_%04d.png;\n"

@@ -108,7 +108,8 @@ bool ruga_choice_nearest(const char* choices, const char* name, char nearest[32]
 void ruga_range_text(const ruga_range* range, ruga_string* text);
 bool ruga_range_has(const ruga_range* range, double value);
 
-// docs/scene.md
+// docs/scene.md, and the example in it for a key at the top level; NULL where there is none.
+const char* ruga_key_example(const ruga_key* key);
 ruga_status ruga_scene_reference(ruga_string* text);
 
 #endif
