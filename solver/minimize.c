@@ -70,5 +70,5 @@ ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, boo
         RUGA_TRY(ruga_quasi_newton_minimize(skin, x, tolerance, certify, result));
         break;
     }
-    return skin->near_dependent || skin->hinges ? ruga_skin_restore(skin, x) : RUGA_OK;
+    return skin->near_dependent ? ruga_skin_restore(skin, x) : RUGA_OK;
 }
