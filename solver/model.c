@@ -95,8 +95,6 @@ static ruga_status check_creases(const ruga_model_def* def) {
         trouble = "solver.method: paper is the published method, which knows no creases";
     } else if (def->has_interior && def->coupling.kind == RUGA_COUPLING_NONE && !def->coupling.foundation) {
         trouble = "with coupling.kind: none and no foundation the skin goes where the interior takes it";
-    } else if (def->has_interior) {
-        trouble = "creases on a skin with an interior are not available yet";
     } else if (skin->vertex_thickness || skin->vertex_young || skin->vertex_growth) {
         trouble = "a skin that varies is not available yet together with creases";
     }
@@ -290,7 +288,7 @@ static ruga_status build_skin_holds(ruga_model* model) {
             hold_vertex(model, selected[k], h);
         }
     }
-    if (model->creases && !model->has_interior && !model->any_skin_held) {
+    if (model->creases && !model->has_interior && !model->any_skin_held && model->skin.motion != RUGA_SKIN_DYNAMIC) {
         hold_in_space(model);
     }
 done:
@@ -360,10 +358,41 @@ done:
     return status;
 }
 
+// On the pieces: springs by the area of material at each node, the rest by its part of each triangle.
+static ruga_status build_pieces_foundation(ruga_model* model, double modulus) {
+    ruga_status status = RUGA_OK;
+    const ruga_creases* creases = model->creases;
+    const double* local = model->variation.wavelength;
+    int nodes = model->mesh.vertex_count, pieces = model->mesh.triangle_count;
+    ruga_connectivity edges = {0};
+    double *a = NULL, *b = NULL;
+    RUGA_TRY_DONE(RUGA_NEW(a, nodes));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(b, pieces));
+    for (int n = 0; n < nodes; n++) {
+        a[n] = foundation_a(modulus, local ? local[n] : model->wavelength);
+    }
+    for (int p = 0; p < pieces; p++) {
+        for (int i = 0; i < 3; i++) {
+            double wavelength = local ? local[model->mesh.triangle[3 * p + i]] : model->wavelength;
+            b[p] += creases->cut.piece[p].fraction * foundation_b(modulus, wavelength) / 3;
+        }
+    }
+    RUGA_TRY_DONE(ruga_creases_edges(&model->mesh, &edges));
+    RUGA_TRY_DONE(ruga_foundation_create_pieces(&model->mesh, &edges, creases->area, a, b, &model->foundation));
+done:
+    ruga_connectivity_clear(&edges);
+    ruga_release(a);
+    ruga_release(b);
+    return status;
+}
+
 static ruga_status build_foundation(ruga_model* model) {
     double nu = model->interior.poisson, modulus = model->interior.young / (1 - nu * nu);
     model->foundation_a = foundation_a(modulus, model->wavelength);
     model->foundation_b = foundation_b(modulus, model->wavelength);
+    if (model->creases) {
+        return build_pieces_foundation(model, modulus);
+    }
     if (model->variation.wavelength) {
         return build_local_foundation(model, modulus);
     }
@@ -401,6 +430,9 @@ static ruga_status build_interior(ruga_model* model) {
     if (!ruga_model_is_prescribed(model)) {
         RUGA_TRY(ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles,
                                   &model->rows));
+    }
+    if (model->creases) {
+        RUGA_TRY(ruga_lattice_copy_vertices(&model->lattice, model->mesh.vertex_count, model->creases->cut.source));
     }
     return build_coupling(model);
 }
