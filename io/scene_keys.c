@@ -234,6 +234,13 @@ static void describe_value(const ruga_key* key, ruga_string* text) {
     case RUGA_KEY_PAIR:
         ruga_string_add(text, "%s, or 2 x %s", plain ? "number" : unit, plain ? "number" : unit);
         break;
+    case RUGA_KEY_POINTS:
+        ruga_string_add(text, "list of rows of %d x %s", key->count, plain ? "number" : unit);
+        break;
+    case RUGA_KEY_VALUES:
+        ruga_string_add(text, "%s, or a list of them", plain ? "number" : unit);
+        ruga_string_add(text, key->choices ? ", or the word %s" : "", key->choices);
+        break;
     case RUGA_KEY_LATER:
         ruga_string_add(text, "not available yet");
         break;
@@ -278,6 +285,14 @@ static const struct {
                 "    move: {translate: [-2 cm, 0, 0], rotate: {axis: [1, 0, 0], angle: 30 deg}}\n"
                 "    during: [0 s, 0.5 s]      # grows, and then stays\n"
                 "  - {region: {box: [[-5 cm, -5 cm, 0], [5 cm, 5 cm, 20 cm]]}, press: 2 kPa}\n"},
+    {"creases", "mesh: {make: {shape: sheet, size: [20 cm, 12 cm], edge: 5 mm}}\n"
+                "interior: none\n"
+                "handles: [{region: {plane: {center: [-9 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}]\n"
+                "creases:\n"
+                "  - curve: {polyline: [[0, -6 cm, 0], [2 cm, 0, 0], [0, 6 cm, 0]]}\n"
+                "    hinge:                    # a valley that closes to 60 degrees in half a second\n"
+                "      stiffness: 0.1 N\n"
+                "      animate: [{time: 0 s, angle: 0 deg}, {time: 0.5 s, angle: 60 deg}]\n"},
     {"solver", "solver: {tolerance: 1e-6, seed: 7}\n"},
 };
 
