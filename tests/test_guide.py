@@ -2,7 +2,7 @@
 # Copyright (c) 2026 The Ruga authors
 #
 # docs/guide.md does what it says: its shell commands are run, in order, in an empty folder, with the files that it
-# tells the reader to save. Runs are cut to one frame. test_guide.py RUGA SOURCE_DIR
+# tells the reader to save. What takes long is made short by more options. test_guide.py RUGA SOURCE_DIR
 import glob
 import os
 import re
@@ -14,6 +14,7 @@ import unittest
 
 RUGA, SOURCE = (os.path.abspath(path) for path in sys.argv[1:3])
 CONCEPTS = os.path.join(SOURCE, "docs", "concepts")
+SHORTER = {"run": " --frames 1 --threads 1", "render": " --width 320 --height 240"}
 PICTURE_MAX = 150_000  # bytes
 
 
@@ -43,7 +44,7 @@ class Guide(unittest.TestCase):
                          {"make", "check", "remesh", "explain", "run", "measure", "render", "export"})
         for command in commands:
             self.assertTrue(command.startswith("ruga "), command)
-            short = command + (" --frames 1 --threads 1" if command.startswith("ruga run ") else "")
+            short = command.replace("--edge 5mm", "--edge 7mm") + SHORTER.get(command.split()[1], "")
             done = subprocess.run(["sh", "-c", short], cwd=folder, capture_output=True, text=True, timeout=300,
                                   env=dict(os.environ, PATH=folder + os.pathsep + os.environ["PATH"]))
             self.assertEqual(done.returncode, 0, f"{command}\n{done.stderr}")
