@@ -20,8 +20,10 @@
 enum { SUBDIVISIONS_MAX = 6 };
 static const double RATE_OF_ONE_FRAME = 24; // per second, where there is no time between frames
 
+static const char formats[] = "obj|ply|gltf|pc2|mdd|usda|xdmf|fold";
+
 static const ruga_option options[] = {
-    {"--format", NULL, "NAME", "obj, ply, gltf, pc2, mdd, usda or xdmf [by the file's ending; .glb is gltf]",
+    {"--format", NULL, formats, "obj, ply, gltf, pc2, mdd, usda or xdmf [by the file's ending; .glb is gltf]",
      false},
     {"--frames", NULL, "A:B",
      "frames, both ends included [obj, ply: all for a name with %04d, otherwise\n"
@@ -30,7 +32,7 @@ static const ruga_option options[] = {
     {"--frame", "-f", "K", "one frame, counted from 0", false},
     {"--subdivide", NULL, "N", "steps of Loop subdivision, 0 to 6 [0]", false},
     {"--unit", "-u", "UNIT", "unit of the coordinates written, such as mm [that of the input mesh]", false},
-    {"--up", NULL, "AXIS",
+    {"--up", NULL, "y|z",
      "the axis that points up, y or z; nothing is turned, but files that can say it do [z]", false},
     {"--fps", NULL, "R", "frames per second at which the frames are shown [that of their times]", false},
     {"--name", NULL, "NAME", "name of the object [that of RESULT]", false},
@@ -39,7 +41,6 @@ static const ruga_option options[] = {
     {0},
 };
 
-static const char formats[] = "obj|ply|gltf|pc2|mdd|usda|xdmf|fold";
 typedef enum format { OBJ, PLY, GLTF, PC2, MDD, USDA, XDMF, FOLD } format;
 
 typedef struct job {

@@ -22,7 +22,7 @@ static const ruga_option options[] = {
     {"--edge", "-e", "LENGTH", "length of an edge, m; the nearest that fits is taken [10 mm]", false},
     {"--cells", NULL, "N,M", "number of quads along X and Y (or around and across), in place of --edge",
      false},
-    {"--pattern", NULL, "NAME", "equilateral, diagonal or alternating triangles [equilateral]", false},
+    {"--pattern", NULL, patterns, "how the triangles lie [equilateral]", false},
     {"--output", "-o", "MESH", "the file to write, .obj or .ply", false},
     {0},
 };
