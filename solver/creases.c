@@ -303,7 +303,11 @@ ruga_status ruga_creases_create(int count, const ruga_crease_def* defs, const ru
     RUGA_TRY(RUGA_NEW_ZERO(c, 1));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(c->law, count));
     RUGA_TRY_DONE(add_curves(count, defs, mesh, connectivity, c, &curves));
-    RUGA_TRY_DONE(ruga_raster_create(mesh, &curves, &how, &c->raster));
+    status = ruga_raster_create(mesh, &curves, &how, &c->raster);
+    if (status == RUGA_BAD_INPUT) {
+        status = ruga_fail_prefix(status, "creases");
+    }
+    RUGA_TRY_DONE(status);
     RUGA_TRY_DONE(ruga_cut_create(&c->raster, &c->cut));
     RUGA_TRY_DONE(ruga_sewing_create(&c->cut, NULL, &c->sewing));
     RUGA_TRY_DONE(ruga_connectivity_create(&c->cut.material, &c->shown));
