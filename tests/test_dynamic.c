@@ -6,6 +6,7 @@
 #include "tests/motion.h"
 #include "tests/scarce_memory.h"
 
+#include "crease/pose.h"
 #include "ruga/ruga.h"
 
 static void create_motion(motion* m) {
@@ -47,6 +48,53 @@ static void momenta(const motion* m, double p[3], double l[3]) {
 }
 
 // ------------------------------------------------------------------------------- steps
+
+static void panels_fold_rigidly_or_not_at_all(void** state) {
+    (void)state;
+    for (int which = LINE; which <= CROSS; which++) {
+        motion m;
+        cut_sheet(&m, 6, (creases)which, true);
+        int segments = m.c.cut.segment_count;
+        double* turn = calloc((size_t)segments, sizeof *turn);
+        ruga_hinge* hinge = calloc((size_t)segments, sizeof *hinge);
+        for (int s = 0; s < segments; s++) {
+            turn[s] = m.c.cut.segment[s].curve >= 0 ? 2.4 : 0;
+        }
+        if (which == CROSS) {
+            assert_status(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 1e-9, m.x), RUGA_BAD_INPUT);
+            assert_non_null(strstr(ruga_last_error(), "do not fit together"));
+        } else {
+            assert_ok(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 1e-14, m.x));
+            ruga_hinges_make(&m.c.raster, &m.c.cut, hinge);
+            for (int s = 0; s < segments; s++) {
+                assert_near(ruga_hinge_measure(&hinge[s], m.x, NULL, NULL), turn[s], 1e-12);
+            }
+            ruga_roll_cone(m.nodes, 2, m.x);
+        }
+        free(turn);
+        free(hinge);
+        clear_motion(&m);
+    }
+}
+
+static void a_plane_rolls_into_a_cone_without_strain(void** state) {
+    (void)state;
+    const double angle = 2, sine = angle / (2 * RUGA_PI), step = 1e-5;
+    // A point with three beside it, the two ends of an arc, and what keeps the mean direction along x.
+    double x[7][3] = {{1.3, 0.2, 0},
+                      {1.3 + step, 0.2, 0},
+                      {1.3, 0.2 + step, 0},
+                      {1.3, 0.2, step},
+                      {2 * cos(angle / 2), 2 * sin(angle / 2), 0},
+                      {2 * cos(angle / 2), -2 * sin(angle / 2), 0},
+                      {5, -0.8 - step, 0}};
+    ruga_roll_cone(7, angle, x[0]);
+    for (int k = 1; k < 4; k++) {
+        assert_near(ruga_distance(x[0], x[k]), step, 1e-4 * step);
+    }
+    assert_near(ruga_distance(x[4], x[5]), 0, 1e-12);
+    assert_near(x[4][2], -2 * sqrt(1 - sine * sine), 1e-12);
+}
 
 static void gaps_stay_at_round_off_over_10000_steps(void** state) {
     (void)state;
@@ -529,6 +577,8 @@ static void every_failed_allocation_is_a_status(void** state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(panels_fold_rigidly_or_not_at_all),
+        cmocka_unit_test(a_plane_rolls_into_a_cone_without_strain),
         cmocka_unit_test(gaps_stay_at_round_off_over_10000_steps),
         cmocka_unit_test(momenta_are_conserved_in_free_flight),
         cmocka_unit_test(energy_does_not_drift_and_damping_only_takes_it),
