@@ -38,12 +38,13 @@ enum { CHUNK = 1024, MOST_HALVINGS = 6, MOST_DAMPING = 200, FIRST_EFFORT = 80, E
 struct ruga_dynamic {
     ruga_dynamic_def def;
     ruga_elastic elastic;
-    ruga_sewing sewing;
-    ruga_stitch* stitch;
+    int axes;              // 1: the same components of all nodes are held; else 3
+    ruga_sewing sewing[3]; // by axis
+    ruga_stitch* stitch[3];
     int nodes;
-    bool* held; // [nodes]
+    bool* held; // [nodes][3]
     double edge, total_mass;
-    double *mass, *inverse_mass; // [nodes]; inverse 0 where held
+    double *mass, *inverse_mass; // [nodes]; [nodes][3], 0 where held
     double* force;               // [nodes][3] at x, where `fresh`
     bool fresh;
     double limit;          // s, 0 = not known
@@ -69,8 +70,10 @@ void ruga_dynamic_destroy(ruga_dynamic** dynamic) {
         return;
     }
     ruga_elastic_clear(&d->elastic);
-    ruga_stitch_destroy(&d->stitch);
-    ruga_sewing_clear(&d->sewing);
+    for (int axis = 0; axis < 3; axis++) {
+        ruga_stitch_destroy(&d->stitch[axis]);
+        ruga_sewing_clear(&d->sewing[axis]);
+    }
     ruga_release(d->held);
     ruga_release(d->mass);
     ruga_release(d->inverse_mass);
@@ -115,24 +118,46 @@ static ruga_status set_mass(ruga_dynamic* d) {
     ruga_release(triangle);
     for (int n = 0; n < d->nodes; n++) {
         int v = d->def.elastic.cut->source[n];
-        // A vertex that no face uses stays where it is.
-        d->held[n] =
-            (d->def.held && d->def.held[n]) || r->edges.incident_start[v] == r->edges.incident_start[v + 1];
-        if (!d->held[n] && !(d->mass[n] > 0)) {
+        bool unused = r->edges.incident_start[v] == r->edges.incident_start[v + 1];
+        for (int i = 3 * n; i < 3 * n + 3; i++) { // a vertex that no face uses stays where it is
+            d->held[i] = unused || (d->def.held && d->def.held[i]);
+            d->inverse_mass[i] = d->held[i] ? 0 : 1 / d->mass[n];
+        }
+        if (!unused && !(d->mass[n] > 0)) {
             return ruga_fail(RUGA_BAD_INPUT, "skin.density is %g kg/m^3: what moves needs mass",
                              skin->density);
         }
-        d->inverse_mass[n] = d->held[n] ? 0 : 1 / d->mass[n];
         d->total_mass += d->mass[n];
+        d->axes = d->held[3 * n] == d->held[3 * n + 1] && d->held[3 * n] == d->held[3 * n + 2] ? d->axes : 3;
     }
     return RUGA_OK;
 }
 
+static ruga_status sew(ruga_dynamic* d) {
+    ruga_status status = RUGA_OK;
+    bool* held = NULL;
+    double* inverse = NULL;
+    RUGA_TRY_DONE(RUGA_NEW(held, d->nodes));
+    RUGA_TRY_DONE(RUGA_NEW(inverse, d->nodes));
+    for (int axis = 0; axis < d->axes; axis++) {
+        for (int n = 0; n < d->nodes; n++) {
+            held[n] = d->held[3 * n + axis];
+            inverse[n] = d->inverse_mass[3 * n + axis];
+        }
+        RUGA_TRY_DONE(ruga_sewing_create(d->def.elastic.cut, held, &d->sewing[axis]));
+        RUGA_TRY_DONE(ruga_stitch_create(&d->sewing[axis], inverse, &d->stitch[axis]));
+    }
+done:
+    ruga_release(held);
+    ruga_release(inverse);
+    return status;
+}
+
 static ruga_status allocate(ruga_dynamic* d) {
     size_t n = (size_t)d->nodes;
-    RUGA_TRY(RUGA_NEW(d->held, n));
+    RUGA_TRY(RUGA_NEW(d->held, 3 * n));
     RUGA_TRY(RUGA_NEW(d->mass, n));
-    RUGA_TRY(RUGA_NEW(d->inverse_mass, n));
+    RUGA_TRY(RUGA_NEW(d->inverse_mass, 3 * n));
     RUGA_TRY(RUGA_NEW(d->force, 3 * n));
     RUGA_TRY(RUGA_NEW(d->mode, 3 * n));
     RUGA_TRY(RUGA_NEW(d->a, 3 * n));
@@ -149,7 +174,7 @@ static ruga_status allocate(ruga_dynamic* d) {
 static void start_mode(ruga_dynamic* d) {
     ruga_random random = {1};
     for (int i = 0; i < 3 * d->nodes; i++) {
-        d->mode[i] = d->held[i / 3] ? 0 : ruga_random_uniform(&random) - 0.5;
+        d->mode[i] = d->held[i] ? 0 : ruga_random_uniform(&random) - 0.5;
     }
     d->limit = 0;
 }
@@ -162,13 +187,13 @@ ruga_status ruga_dynamic_create(const ruga_dynamic_def* def, ruga_dynamic** dyna
     RUGA_TRY(RUGA_NEW_ZERO(d, 1));
     d->def = *def;
     d->nodes = def->elastic.cut->node_count;
+    d->axes = 1;
     d->edge = ruga_mesh_mean_edge(&def->elastic.raster->mesh);
     RUGA_TRY_DONE(ruga_elastic_create(&def->elastic, &d->elastic));
     memcpy(d->def.gravity, def->gravity, sizeof d->def.gravity);
     RUGA_TRY_DONE(allocate(d));
     RUGA_TRY_DONE(set_mass(d));
-    RUGA_TRY_DONE(ruga_sewing_create(def->elastic.cut, d->held, &d->sewing));
-    RUGA_TRY_DONE(ruga_stitch_create(&d->sewing, d->inverse_mass, &d->stitch));
+    RUGA_TRY_DONE(sew(d));
     memcpy(d->rest, d->elastic.rest, (size_t)def->elastic.cut->segment_count * sizeof *d->rest);
     start_mode(d);
     d->def.held = NULL; // not kept
@@ -225,8 +250,11 @@ static void product_chunk(int begin, int end, int chunk, void* context) {
     const vectors* v = context;
     double sum = 0;
     for (int n = begin; n < end; n++) {
-        const double *x = v->x + 3 * (size_t)n, *y = v->y + 3 * (size_t)n;
-        sum += v->d->held[n] ? 0 : v->d->mass[n] * ruga_dot(x, y);
+        double own = 0;
+        for (int i = 3 * n; i < 3 * n + 3; i++) {
+            own += v->d->held[i] ? 0 : v->x[i] * v->y[i];
+        }
+        sum += v->d->mass[n] * own;
     }
     v->d->partial[chunk] = sum;
 }
@@ -260,14 +288,35 @@ static void scale_add_chunk(int begin, int end, int chunk, void* context) {
 static void kick_chunk(int begin, int end, int chunk, void* context) {
     const vectors* v = context;
     (void)chunk;
-    for (int n = begin; n < end; n++) {
-        ruga_add_scaled(v->s * v->d->inverse_mass[n], v->x + 3 * (size_t)n, v->out + 3 * (size_t)n);
+    for (int i = 3 * begin; i < 3 * end; i++) {
+        v->out[i] += v->s * v->d->inverse_mass[i] * v->x[i];
     }
 }
 
 // v += dt f / m
 static void kick(const ruga_dynamic* d, double dt, const double* force, double* v) {
     ruga_parallel_for(d->nodes, CHUNK, kick_chunk, &(vectors){.d = d, .x = force, .out = v, .s = dt});
+}
+
+// ------------------------------------------------------------------------------- sewing
+
+// Pre-stabilisation for x and dt; without x post-stabilisation. Components are sewn alike where the same
+// nodes are held along each, and each by itself otherwise. Uses d->d.
+static void stabilise(ruga_dynamic* d, const double* x, double dt, double* v) {
+    for (int axis = 0; axis < d->axes; axis++) {
+        double* out = d->axes == 1 ? v : d->d;
+        if (d->axes == 3) {
+            memcpy(out, v, 3 * (size_t)d->nodes * sizeof *v);
+        }
+        if (x) {
+            (void)ruga_stitch_before(d->stitch[axis], x, dt, out);
+        } else {
+            (void)ruga_stitch_after(d->stitch[axis], out);
+        }
+        for (int n = 0; n < d->nodes && d->axes == 3; n++) {
+            v[3 * n + axis] = out[3 * n + axis];
+        }
+    }
 }
 
 // ------------------------------------------------------------------------------- damping
@@ -279,11 +328,8 @@ static void apply_damping(ruga_dynamic* d, double dt, const double* x, const dou
         ruga_elastic_damp(&d->elastic, dt * d->def.damping, x, v, out);
     }
     double own = 1 + d->def.drag * dt;
-    for (int n = 0; n < d->nodes; n++) {
-        for (int i = 0; i < 3; i++) {
-            size_t k = 3 * (size_t)n + (size_t)i;
-            out[k] = d->held[n] ? 0 : own * v[k] + d->inverse_mass[n] * out[k];
-        }
+    for (int i = 0; i < 3 * d->nodes; i++) {
+        out[i] = d->held[i] ? 0 : own * v[i] + d->inverse_mass[i] * out[i];
     }
 }
 
@@ -298,7 +344,7 @@ static int damp(ruga_dynamic* d, double dt, const double* x, double* v) {
     memcpy(start, v, size);
     apply_damping(d, dt, x, v, q);
     for (int i = 0; i < 3 * d->nodes; i++) {
-        r[i] = d->held[i / 3] ? 0 : start[i] - q[i];
+        r[i] = d->held[i] ? 0 : start[i] - q[i];
     }
     memcpy(p, r, size);
     double rr = mass_product(d, r, r), enough = DAMPED * DAMPED * mass_product(d, start, start);
@@ -344,13 +390,13 @@ static void move_held(ruga_dynamic* d, const ruga_dynamic_drive* drive, double t
         drive->move(drive->context, time, d->a);
     }
     for (int i = 0; i < 3 * d->nodes; i++) {
-        v[i] = d->held[i / 3] ? (moved ? (d->a[i] - x[i]) / dt : 0) : v[i];
+        v[i] = d->held[i] ? (moved ? (d->a[i] - x[i]) / dt : 0) : v[i];
     }
 }
 
 void ruga_dynamic_start(ruga_dynamic* d, double* x, double* v) {
-    (void)ruga_stitch_close(d->stitch, x);
-    (void)ruga_stitch_after(d->stitch, v);
+    stabilise(d, NULL, 0, x); // in the metric of masses
+    stabilise(d, NULL, 0, v);
     ruga_elastic_start(&d->elastic, x);
     start_mode(d);
     d->fresh = false;
@@ -364,11 +410,11 @@ void ruga_dynamic_step(ruga_dynamic* d, const ruga_dynamic_drive* drive, double 
     kick(d, 0.5 * dt, d->force, v);
     move_held(d, drive, time + dt, dt, x, v);
     report->damping_products += damp(d, dt, x, v);
-    (void)ruga_stitch_before(d->stitch, x, dt, v);
+    stabilise(d, x, dt, v);
     add(d, dt, v, x);
     set_force(d, drive, time + dt, x, &report->elastic);
     kick(d, 0.5 * dt, d->force, v);
-    (void)ruga_stitch_after(d->stitch, v);
+    stabilise(d, NULL, 0, v);
 }
 
 // ------------------------------------------------------------------------------- stability
@@ -381,16 +427,16 @@ static void apply_stiffness(ruga_dynamic* d, const double* x, const double* base
     add(d, step, u, place);
     ruga_elastic_force(&d->elastic, place, out, &unused);
     for (int i = 0; i < 3 * d->nodes; i++) {
-        out[i] = (base[i] - out[i]) * d->inverse_mass[i / 3] / step;
+        out[i] = (base[i] - out[i]) * d->inverse_mass[i] / step;
     }
-    (void)ruga_stitch_after(d->stitch, out);
+    stabilise(d, NULL, 0, out);
 }
 
 double ruga_dynamic_limit(ruga_dynamic* d, const double* x, int effort) {
     double *base = d->a, *image = d->b, *place = d->c, square = 0;
     ruga_elastic_energies unused;
     ruga_elastic_force(&d->elastic, x, base, &unused);
-    (void)ruga_stitch_after(d->stitch, d->mode);
+    stabilise(d, NULL, 0, d->mode);
     for (int k = 0; k < effort; k++) {
         double size = 0, norm = mass_product(d, d->mode, d->mode);
         for (int i = 0; i < 3 * d->nodes; i++) {

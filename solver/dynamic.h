@@ -10,7 +10,7 @@
 
 typedef struct ruga_dynamic_def {
     ruga_elastic_def elastic;
-    const bool* held;  // [nodes] or NULL: moved by the drive, or not at all. Of a vertex hold all copies
+    const bool* held;  // [nodes][3] or NULL: moved by the drive, or not at all. Of a vertex hold all copies
     double gravity[3]; // m/s^2
     double damping;    // s: viscous stress is this times the stiffness times the rate of strain
     double drag;       // 1/s: force over momentum
@@ -19,7 +19,7 @@ typedef struct ruga_dynamic_def {
 
 // What changes with time. Both may be NULL.
 typedef struct ruga_dynamic_drive {
-    // Places of held nodes at a time; x [nodes][3] holds the present ones, which others keep.
+    // Places of held components at a time; x [nodes][3] holds the present ones. Others are not looked at.
     void (*move)(void* context, double time, double* x);
     // Adds to force [nodes][3], N, at x; may set rest angles rest [segments], rad, of creases.
     void (*load)(void* context, double time, const double* x, double* force, double* rest);

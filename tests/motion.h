@@ -42,7 +42,7 @@ static inline void cut_sheet(motion* m, int n, creases which, bool full) {
     m->x = calloc((size_t)m->nodes * 3, sizeof *m->x);
     m->v = calloc((size_t)m->nodes * 3, sizeof *m->v);
     m->old = calloc((size_t)m->nodes * 3, sizeof *m->old);
-    m->held = calloc((size_t)m->nodes, sizeof *m->held);
+    m->held = calloc((size_t)m->nodes * 3, sizeof *m->held);
     m->stiffness = calloc((size_t)m->c.cut.segment_count + 1, sizeof *m->stiffness);
     ruga_cut_rest(&m->c.raster, &m->c.cut, m->x);
     m->def.elastic.raster = &m->c.raster;
@@ -52,6 +52,10 @@ static inline void cut_sheet(motion* m, int n, creases which, bool full) {
     m->def.elastic.skin.young = 1e5;
     m->def.elastic.skin.density = 500;
     m->def.held = m->held;
+}
+
+static inline void hold(motion* m, int n, bool held) {
+    m->held[3 * n] = m->held[3 * n + 1] = m->held[3 * n + 2] = held;
 }
 
 static inline void clear_motion(motion* m) {

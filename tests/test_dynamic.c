@@ -31,7 +31,7 @@ static double energy_of(const motion* m, const ruga_dynamic_report* report) {
     double energy = report->elastic.sheet + report->elastic.hinges;
     for (int n = 0; n < m->nodes; n++) {
         energy += 0.5 * mass[n] * ruga_dot(m->v + 3 * n, m->v + 3 * n);
-        energy -= m->held[n] ? 0 : mass[n] * ruga_dot(m->def.gravity, m->x + 3 * n);
+        energy -= m->held[3 * n] ? 0 : mass[n] * ruga_dot(m->def.gravity, m->x + 3 * n);
     }
     return energy;
 }
@@ -106,7 +106,8 @@ static void gaps_stay_at_round_off_over_10000_steps(void** state) {
         choose_kind(&m, kind);
         m.def.gravity[2] = -9.81;
         for (int n = 0; n < m.nodes; n++) {
-            m.held[n] = m.x[3 * n] < 1e-9 && (m.x[3 * n + 1] < 1e-9 || m.x[3 * n + 1] > 4 * EDGE - 1e-9);
+            hold(&m, n, m.x[3 * n] < 1e-9 && (m.x[3 * n + 1] < 1e-9 || m.x[3 * n + 1] > 4 * EDGE - 1e-9));
+            m.held[3 * n + 1] = m.held[3 * n + 1] || (kind > 3 && m.x[3 * n] > 4 * EDGE - 1e-9); // slides
         }
         create_motion(&m);
         ruga_dynamic_start(m.dynamic, m.x, m.v);
@@ -211,7 +212,7 @@ static void the_step_is_of_second_order_and_of_first_with_damping(void** state) 
             m.def.damping = kind < 2 ? 0 : 3e-3;
             m.def.gravity[2] = -9.81;
             for (int n = 0; n < m.nodes; n++) {
-                m.held[n] = m.x[3 * n] < 1e-9;
+                hold(&m, n, m.x[3 * n] < 1e-9);
             }
             create_motion(&m);
             for (int n = 0; n < m.nodes; n++) { // smooth
@@ -317,7 +318,7 @@ static void a_panel_on_its_crease_swings_as_a_pendulum(void** state) {
             }
             ruga_subtract(middle, start, d);
             for (int i = 0; i < 3 && ruga_dot(d, down) < 0; i++) {
-                m.held[piece->node[i]] = true;
+                hold(&m, piece->node[i], true);
             }
         }
         for (int i = 0; i < 3; i++) {
@@ -326,12 +327,12 @@ static void a_panel_on_its_crease_swings_as_a_pendulum(void** state) {
         create_motion(&m);
         double inertia = 0, moment = 0, length = 0;
         for (int n = 0; n < m.nodes; n++) {
-            double d[3], mass = m.held[n] ? 0 : ruga_dynamic_mass(m.dynamic)[n];
+            double d[3], mass = m.held[3 * n] ? 0 : ruga_dynamic_mass(m.dynamic)[n];
             ruga_subtract(m.x + 3 * n, start, d);
             double arm = ruga_dot(d, down);
             inertia += mass * arm * arm;
             moment += 9.81 * mass * arm;
-            m.v[3 * n + 2] = m.held[n] ? 0 : 0.05 * arm;
+            m.v[3 * n + 2] = m.held[3 * n] ? 0 : 0.05 * arm;
         }
         for (int s = 0; s < m.c.cut.segment_count; s++) {
             length += m.c.cut.segment[s].length;
@@ -362,8 +363,8 @@ static void a_bar_and_a_drum_have_their_frequencies(void** state) {
         for (int n = 0; n < m.nodes; n++) {
             double *x = m.x + 3 * n, u = RUGA_PI * x[0] / length, w = RUGA_PI * x[1] / length;
             bool side = fmin(sin(u), sin(w)) < 1e-9;
-            m.held[n] = drum ? side : x[0] < 1e-9;
-            m.v[3 * n + (drum ? 2 : 0)] = m.held[n] ? 0 : 1e-3 * (drum ? sin(u) * sin(w) : sin(u / 2));
+            hold(&m, n, drum ? side : x[0] < 1e-9);
+            m.v[3 * n + (drum ? 2 : 0)] = m.held[3 * n] ? 0 : 1e-3 * (drum ? sin(u) * sin(w) : sin(u / 2));
             x[0] *= drum ? 1 + strain : 1;
             x[1] *= drum ? 1 + strain : 1;
         }
@@ -507,7 +508,7 @@ static void too_long_steps_are_halved(void** state) {
 static void carry(void* context, double time, double* x) {
     const motion* m = context;
     for (int n = 0; n < m->nodes; n++) {
-        if (m->held[n]) {
+        if (m->held[3 * n]) {
             x[3 * n + 2] = 0.3 * time;
         }
     }
@@ -526,7 +527,7 @@ static void the_bits_depend_on_nothing(void** state) {
         m.def.damping = 1e-3;
         m.def.gravity[2] = -9.81;
         for (int n = 0; n < m.nodes; n++) {
-            m.held[n] = m.x[3 * n] < 1e-9;
+            hold(&m, n, m.x[3 * n] < 1e-9);
         }
         create_motion(&m);
         ruga_dynamic_start(m.dynamic, m.x, m.v);

@@ -59,10 +59,11 @@ static ruga_status start(cloth* c, const ruga_raster_def* def, ruga_skin_model m
     size_t nodes = (size_t)c->cut.node_count;
     RUGA_TRY(RUGA_NEW(c->x, 3 * nodes));
     RUGA_TRY(RUGA_NEW_ZERO(c->v, 3 * nodes));
-    RUGA_TRY(RUGA_NEW(c->held, nodes));
+    RUGA_TRY(RUGA_NEW(c->held, 3 * nodes));
     ruga_cut_rest(&c->raster, &c->cut, c->x);
     for (size_t n = 0; n < nodes; n++) {
-        c->held[n] = hypot(c->x[3 * n], c->x[3 * n + 1]) < 0.2001;
+        c->held[3 * n] = c->held[3 * n + 1] = c->held[3 * n + 2] =
+            hypot(c->x[3 * n], c->x[3 * n + 1]) < 0.2001;
         c->v[3 * n + 2] = 0.1 * sin(20 * c->x[3 * n]) * cos(17 * c->x[3 * n + 1]);
     }
     dynamic.elastic.raster = &c->raster;
@@ -81,49 +82,37 @@ static ruga_status start(cloth* c, const ruga_raster_def* def, ruga_skin_model m
     return RUGA_OK;
 }
 
-// What has to be factorised, by itself: rows, S and its factor.
-static ruga_status time_setup(const cloth* c, double* seconds) {
-    ruga_sewing sewing;
-    ruga_stitch* stitch;
-    double before = cpu_seconds(), *inverse = NULL;
+// What has to be made for sewing (rows, S and its factor), and both projections of one step.
+static ruga_status time_sewing(const cloth* c, int steps, double* setup, double* projections) {
+    ruga_status status = RUGA_OK;
+    ruga_sewing sewing = {0};
+    ruga_stitch* stitch = NULL;
+    double *inverse = NULL, *v = NULL, before = cpu_seconds();
+    bool* held = NULL;
     size_t nodes = (size_t)c->cut.node_count;
-    RUGA_TRY(RUGA_NEW(inverse, nodes));
+    RUGA_TRY_DONE(RUGA_NEW(inverse, nodes));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(v, 3 * nodes));
+    RUGA_TRY_DONE(RUGA_NEW(held, nodes));
     for (size_t n = 0; n < nodes; n++) {
-        inverse[n] = c->held[n] ? 0 : 1 / ruga_dynamic_mass(c->dynamic)[n];
+        held[n] = c->held[3 * n];
+        inverse[n] = held[n] ? 0 : 1 / ruga_dynamic_mass(c->dynamic)[n];
     }
-    RUGA_TRY(ruga_sewing_create(&c->cut, c->held, &sewing));
-    RUGA_TRY(ruga_stitch_create(&sewing, inverse, &stitch));
-    *seconds = cpu_seconds() - before;
+    RUGA_TRY_DONE(ruga_sewing_create(&c->cut, held, &sewing));
+    RUGA_TRY_DONE(ruga_stitch_create(&sewing, inverse, &stitch));
+    *setup = cpu_seconds() - before;
     before = cpu_seconds();
-    ruga_stitch_destroy(&stitch);
-    ruga_sewing_clear(&sewing);
-    ruga_release(inverse);
-    return RUGA_OK;
-}
-
-static ruga_status time_projections(const cloth* c, int steps, double* seconds) {
-    ruga_sewing sewing;
-    ruga_stitch* stitch;
-    double *inverse = NULL, *v = NULL;
-    size_t nodes = (size_t)c->cut.node_count;
-    RUGA_TRY(RUGA_NEW(inverse, nodes));
-    RUGA_TRY(RUGA_NEW_ZERO(v, 3 * nodes));
-    for (size_t n = 0; n < nodes; n++) {
-        inverse[n] = c->held[n] ? 0 : 1 / ruga_dynamic_mass(c->dynamic)[n];
-    }
-    RUGA_TRY(ruga_sewing_create(&c->cut, c->held, &sewing));
-    RUGA_TRY(ruga_stitch_create(&sewing, inverse, &stitch));
-    double before = cpu_seconds();
     for (int k = 0; k < steps; k++) {
-        RUGA_TRY(ruga_stitch_before(stitch, c->x, 1e-4, v));
-        RUGA_TRY(ruga_stitch_after(stitch, v));
+        RUGA_TRY_DONE(ruga_stitch_before(stitch, c->x, 1e-4, v));
+        RUGA_TRY_DONE(ruga_stitch_after(stitch, v));
     }
-    *seconds = (cpu_seconds() - before) / steps;
+    *projections = (cpu_seconds() - before) / steps;
+done:
     ruga_stitch_destroy(&stitch);
     ruga_sewing_clear(&sewing);
     ruga_release(inverse);
     ruga_release(v);
-    return RUGA_OK;
+    ruga_release(held);
+    return status;
 }
 
 static ruga_status bench_skirt(int columns, int rows, int creases, ruga_skin_model model, double damping,
@@ -136,7 +125,7 @@ static ruga_status bench_skirt(int columns, int rows, int creases, ruga_skin_mod
                                  .cells = {columns, rows},
                                  .pattern = RUGA_PATTERN_DIAGONAL};
     ruga_dynamic_report report = {0};
-    double create, setup, projections;
+    double create = 0, setup = 0, projections = 0;
     RUGA_TRY_DONE(ruga_mesh_make(&skirt, &c.mesh));
     for (int k = 0; k < creases; k++) {
         // Within a column of quads, never on a line of nodes.
@@ -145,7 +134,6 @@ static ruga_status bench_skirt(int columns, int rows, int creases, ruga_skin_mod
             add_line(&c, RUGA_FREEDOM_SINGLE, 0.15 * cos(u), 0.15 * sin(u), 0.65 * cos(u), 0.65 * sin(u)));
     }
     RUGA_TRY_DONE(start(&c, &def, model, damping, &create));
-    RUGA_TRY_DONE(time_setup(&c, &setup));
     double dt = 0.7 * ruga_dynamic_limit(c.dynamic, c.x, 60);
     ruga_dynamic_step(c.dynamic, NULL, 0, dt, c.x, c.v, &report);
     report = (ruga_dynamic_report){0};
@@ -154,7 +142,7 @@ static ruga_status bench_skirt(int columns, int rows, int creases, ruga_skin_mod
         ruga_dynamic_step(c.dynamic, NULL, k * dt, dt, c.x, c.v, &report);
     }
     double seconds = (cpu_seconds() - before) / steps;
-    RUGA_TRY_DONE(time_projections(&c, steps, &projections));
+    RUGA_TRY_DONE(time_sewing(&c, steps, &setup, &projections));
     double stages = 1 + (double)report.damping_products / steps;
     int springs = ruga_dynamic_elastic(c.dynamic)->cloth.springs.count;
     printf("%6d -> %6d %-8s %6g %6.1f | %8.3f %8.3f %5.1f %% | %8d %6.2f | %6.1f %6.1f | %8.2g\n",
