@@ -315,13 +315,13 @@ static void gather_damping(int begin, int end, int chunk, void* context) {
 void ruga_elastic_force(ruga_elastic* e, const double* x, double* force, ruga_elastic_energies* energies) {
     pass p = {.e = e, .x = x, .out = force};
     memset(force, 0, 3 * (size_t)e->node_count * sizeof *force);
-    energies->sheet = ruga_springs_force(&e->cloth.springs, x, force);
+    energies->membrane = ruga_springs_force(&e->cloth.springs, x, force);
     ruga_parallel_for(e->triangle_count, CHUNK, triangle_forces, &p);
-    energies->sheet += total(e, e->triangle_count, 0);
+    energies->membrane += total(e, e->triangle_count, 0);
     ruga_parallel_for(e->bend_count, CHUNK, bend_forces, &p);
-    energies->sheet += total(e, e->bend_count, 0);
+    energies->bending = total(e, e->bend_count, 0);
     ruga_parallel_for(e->hinge_count, CHUNK, hinge_forces, &p);
-    energies->sheet += total(e, e->hinge_count, 0);
+    energies->bending += total(e, e->hinge_count, 0);
     energies->hinges = total(e, e->hinge_count, 1);
     if (e->triangle_count + e->hinge_count > 0) {
         ruga_parallel_for(e->node_count, CHUNK, gather_forces, &p);

@@ -19,7 +19,7 @@ typedef struct ruga_elastic_def {
 } ruga_elastic_def;
 
 typedef struct ruga_elastic_energies {
-    double sheet;  // J: membrane and bending, or all springs
+    double membrane, bending; // J; all springs count as membrane
     double hinges; // creases of RUGA_CREASE_ANGLE
 } ruga_elastic_energies;
 

@@ -45,6 +45,7 @@ struct ruga_model {
     double step;
     int frames;
     double gravity[3];
+    ruga_start_def start;
     int keyframe_count;
     ruga_keyframe_def* keyframes;
     int handle_count;

@@ -28,7 +28,7 @@ static void disturb(motion* m, double out, double speed) {
 
 static double energy_of(const motion* m, const ruga_dynamic_report* report) {
     const double* mass = ruga_dynamic_mass(m->dynamic);
-    double energy = report->elastic.sheet + report->elastic.hinges;
+    double energy = report->elastic.membrane + report->elastic.bending + report->elastic.hinges;
     for (int n = 0; n < m->nodes; n++) {
         energy += 0.5 * mass[n] * ruga_dot(m->v + 3 * n, m->v + 3 * n);
         energy -= m->held[3 * n] ? 0 : mass[n] * ruga_dot(m->def.gravity, m->x + 3 * n);

@@ -40,7 +40,7 @@ static void forces_are_minus_the_gradient_and_have_no_sum(void** state) {
                 for (int side = 0; side < 2; side++) {
                     m.x[i] = x + (side ? step : -step);
                     ruga_elastic_force(&elastic, m.x, force, &e);
-                    at[side] = e.sheet + e.hinges;
+                    at[side] = e.membrane + e.bending + e.hinges;
                 }
                 m.x[i] = x;
                 error[half] = fmax(error[half], fabs((at[1] - at[0]) / (2 * step) + m.old[i]));
@@ -180,7 +180,7 @@ static double fold_energy(ruga_crease_style style, double theta, double theta0, 
         ruga_elastic_set_rest(&elastic[with], rest);
         ruga_elastic_force(&elastic[with], x, force, &e[with]);
     }
-    double energy = e[1].sheet + e[1].hinges - e[0].sheet - e[0].hinges;
+    double energy = e[1].membrane + e[1].bending + e[1].hinges - e[0].membrane - e[0].bending - e[0].hinges;
     for (int with = 0; with < 2; with++) {
         ruga_elastic_clear(&elastic[with]);
     }
