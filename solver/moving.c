@@ -115,6 +115,24 @@ static ruga_status fold(ruga_moving* m, double* x) {
     return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "start.fold") : status;
 }
 
+// Rolled copies of one place may part a little: brought together, held ones too.
+static ruga_status close_gaps(const ruga_moving* m, double* x) {
+    ruga_status status = RUGA_OK;
+    ruga_stitch* stitch = NULL;
+    double* inverse = NULL;
+    RUGA_TRY_DONE(RUGA_NEW(inverse, m->nodes));
+    for (int n = 0; n < m->nodes; n++) {
+        double mass = ruga_dynamic_mass(m->dynamic)[n];
+        inverse[n] = mass > 0 ? 1 / mass : 0;
+    }
+    RUGA_TRY_DONE(ruga_stitch_create(&m->model->creases->sewing, inverse, &stitch));
+    RUGA_TRY_DONE(ruga_stitch_close(stitch, x));
+done:
+    ruga_stitch_destroy(&stitch);
+    ruga_release(inverse);
+    return status;
+}
+
 // Angles near those that were folded: half a turn has two signs.
 static void take_angles(ruga_moving* m) {
     const ruga_creases* creases = m->model->creases;
@@ -134,6 +152,9 @@ ruga_status ruga_moving_start(ruga_moving* m, double* x) {
     }
     if (start->cone > 0) {
         ruga_roll_cone(m->nodes, start->cone, x);
+    }
+    if (m->model->creases) {
+        RUGA_TRY(close_gaps(m, x));
     }
     for (int i = 0; i < 3 * m->nodes; i++) {
         m->velocity[i] = m->model->skin_handle[i] >= 0 ? 0 : start->velocity[i % 3];
