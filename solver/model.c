@@ -23,6 +23,42 @@ static bool positive(double value) {
     return value > 0 && isfinite(value);
 }
 
+// What only a free skin in dynamic motion has, and what that has not.
+static ruga_status check_motion(const ruga_model_def* def) {
+    const ruga_skin_def* s = &def->skin;
+    const char* trouble = NULL;
+    if (s->motion != RUGA_SKIN_DYNAMIC) {
+        const ruga_start_def* start = &def->start;
+        bool started = start->fold != 0 || start->cone != 0 || ruga_norm(start->velocity) > 0;
+        return s->model == RUGA_SKIN_SPRINGS
+                   ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
+               : started ? ruga_fail(RUGA_BAD_INPUT,
+                                     "start: needs skin.motion: dynamic; a static skin starts at rest")
+                         : RUGA_OK;
+    }
+    if (def->has_interior) {
+        trouble = "needs interior: none";
+    } else if (s->model == RUGA_SKIN_VOLUME) {
+        trouble = "goes with model: shell or springs";
+    } else if (s->bending != RUGA_BENDING_HINGE) {
+        trouble = "knows bending: hinge only";
+    } else if (s->vertex_thickness || s->vertex_young || s->vertex_growth || s->growth[0] != 1 ||
+               s->growth[1] != 1) {
+        trouble = "knows one thickness and modulus and no growth yet";
+    }
+    if (trouble) {
+        return ruga_fail(RUGA_BAD_INPUT, "skin.motion: dynamic %s", trouble);
+    }
+    RUGA_TRY(require(positive(s->density), "skin.density", s->density, "above 0 where the skin moves"));
+    RUGA_TRY(require(s->damping >= 0 && isfinite(s->damping), "skin.damping", s->damping, "0 or above"));
+    RUGA_TRY(require(s->drag >= 0 && isfinite(s->drag), "skin.drag", s->drag, "0 or above"));
+    RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
+    RUGA_TRY(require(isfinite(ruga_norm(def->start.velocity)), "start.velocity",
+                     ruga_norm(def->start.velocity), "finite"));
+    return require(def->start.cone >= 0 && def->start.cone < 2 * RUGA_PI, "start.cone", def->start.cone,
+                   "between 0 and a whole turn");
+}
+
 static ruga_status check_material(const ruga_model_def* def) {
     const ruga_skin_def* s = &def->skin;
     const ruga_interior_def* q = &def->interior;
@@ -34,11 +70,8 @@ static ruga_status check_material(const ruga_model_def* def) {
     for (int i = 0; i < 2 && !s->vertex_growth; i++) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
     }
-    if (s->motion == RUGA_SKIN_DYNAMIC || s->model == RUGA_SKIN_SPRINGS) {
-        return ruga_fail(RUGA_BAD_INPUT, "skin.%s is not available yet in this version of Ruga",
-                         s->model == RUGA_SKIN_SPRINGS ? "model: springs" : "motion: dynamic");
-    }
-    RUGA_TRY(require(s->motion == RUGA_SKIN_STATIC || positive(s->relaxation), "skin.relaxation",
+    RUGA_TRY(check_motion(def));
+    RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation",
                      s->relaxation, "above 0"));
     if (!def->has_interior) {
         return RUGA_OK;
@@ -156,6 +189,7 @@ static ruga_status copy_def(const ruga_model_def* def, ruga_model* model) {
     model->step = def->step;
     model->frames = def->frames;
     memcpy(model->gravity, def->gravity, sizeof model->gravity);
+    model->start = def->start;
     if (model->solver.method == RUGA_METHOD_DEFAULT) {
         model->solver.method = RUGA_METHOD_QUASI_NEWTON;
     }
@@ -552,7 +586,7 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
             RUGA_TRY_DONE(build_dense(model, def->lattice.depth));
         }
     } else {
-        model->solves_skin = true;
+        model->solves_skin = model->skin.motion != RUGA_SKIN_DYNAMIC;
     }
     model->seam = model->clusters.count;
     if (model->creases) {

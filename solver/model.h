@@ -46,6 +46,7 @@ struct ruga_model {
     double step;
     int frames;
     double gravity[3];
+    ruga_start_def start;
     int keyframe_count;
     ruga_keyframe_def* keyframes;
     ruga_follow follow; // count 0 where the interior follows no surface
