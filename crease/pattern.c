@@ -42,7 +42,7 @@ ruga_status ruga_crease_pattern_add_vertex(ruga_crease_pattern* p, const double 
 ruga_status ruga_crease_pattern_add_edge(ruga_crease_pattern* p, int a, int b, ruga_assignment assignment,
                                          double angle) {
     RUGA_TRY(RUGA_RESERVE(p->edge, p->edge_capacity, (size_t)p->edge_count + 1));
-    p->edge[p->edge_count++] = (ruga_crease_pattern_edge){{a, b}, assignment, angle};
+    p->edge[p->edge_count++] = (ruga_crease_pattern_edge){{a, b}, assignment, angle, false};
     return RUGA_OK;
 }
 

@@ -152,6 +152,61 @@ static void bad_patterns_are_repaired_aloud(void** state) {
     ruga_crease_pattern_clear(&p);
 }
 
+static void assert_meshed_area(const ruga_crease_pattern* p, double area) {
+    ruga_mesh mesh;
+    assert_ok(ruga_crease_pattern_mesh(p, FILE_NAME, &mesh));
+    assert_near(ruga_mesh_area(&mesh), area, 1e-12 * area);
+    ruga_mesh_clear(&mesh);
+}
+
+#define RING       "[0,0],[4,0],[4,4],[0,4],[1,1],[3,1],[3,3],[1,3]"
+#define RING_EDGES "[0,1],[1,2],[2,3],[3,0],[4,5],[5,6],[6,7],[7,4]"
+
+static void borders_within_the_sheet_cut_holes(void** state) {
+    (void)state;
+    ruga_crease_pattern p;
+    // A hole that nothing joins to the outline, with an island in it and a closed crease around it.
+    read_text("{\"vertices_coords\": [" RING
+              ",[1.5,1.5],[2.5,1.5],[2,2.5],[0.5,0.5],[3.5,0.5],[3.5,3.5],[0.5,3.5]],"
+              "\"edges_vertices\": [" RING_EDGES ",[8,9],[9,10],[10,8],[11,12],[12,13],[13,14],[14,11]],"
+              "\"edges_assignment\": "
+              "[\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"M\",\"M\",\"M\",\"M\"]}",
+              &p);
+    assert_true(has_note(&p, "1 places within borders"));
+    assert_int_equal(p.face_count, 2);
+    assert_meshed_area(&p, 16 - 4 + 0.5);
+    ruga_crease_pattern_clear(&p);
+    // Creases from its corners to the outline; faces given, but for the hole, and not given.
+    static const char* const faces[] = {"", ",\"faces_vertices\": [[0,1,5,4],[1,2,6,5],[2,3,7,6],[3,0,4,7]]"};
+    for (int k = 0; k < 2; k++) {
+        char text[1024];
+        (void)snprintf(
+            text, sizeof text,
+            "{\"vertices_coords\": [" RING "], \"edges_vertices\": [" RING_EDGES
+            ",[0,4],[1,5],[2,6],[3,7]], \"edges_assignment\": [\"B\",\"B\",\"B\",\"B\",\"B\",\"B\","
+            "\"B\",\"B\",\"M\",\"V\",\"M\",\"V\"]%s}",
+            faces[k]);
+        read_text(text, &p);
+        assert_int_equal(p.face_count, 4);
+        assert_int_equal(p.note_count, k ? 0 : 2);
+        assert_meshed_area(&p, 12);
+        ruga_crease_pattern_clear(&p);
+    }
+    // A border across the sheet parts no paper from a hole; two sheets beside one another are two sheets.
+    read_text("{\"vertices_coords\": [[0,0],[1,0],[2,0],[2,1],[1,1],[0,1],[5,0],[6,0],[6,1]],"
+              "\"edges_vertices\": [[0,1],[1,2],[2,3],[3,4],[4,5],[5,0],[1,4],[6,7],[7,8],[8,6]],"
+              "\"edges_assignment\": [\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\"]}",
+              &p);
+    assert_int_equal(p.face_count, 3);
+    assert_meshed_area(&p, 2.5);
+    ruga_crease_pattern_clear(&p);
+    // A face that is missing by mistake: its creases say that there is paper.
+    read_text("{" SQUARE ", \"faces_vertices\": [[0,1,8,7],[1,2,3,8],[3,4,5,8]]}", &p);
+    assert_true(has_note(&p, "has a face on one side only"));
+    assert_int_equal(p.face_count, 4);
+    ruga_crease_pattern_clear(&p);
+}
+
 static void broken_files_are_refused_with_the_field(void** state) {
     (void)state;
     refuse_text("{", "not JSON");
@@ -618,6 +673,7 @@ int main(void) {
         cmocka_unit_test(a_plain_pattern_is_read_as_it_is),
         cmocka_unit_test(missing_faces_are_found_and_said),
         cmocka_unit_test(bad_patterns_are_repaired_aloud),
+        cmocka_unit_test(borders_within_the_sheet_cut_holes),
         cmocka_unit_test(broken_files_are_refused_with_the_field),
         cmocka_unit_test(frames_inherit),
         cmocka_unit_test(what_is_written_reads_back_to_the_bit),
