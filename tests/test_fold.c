@@ -432,17 +432,42 @@ static void refuse_drawing(const char* text, const char* sentence) {
 
 static void broken_drawings_are_refused_with_the_line(void** state) {
     (void)state;
-    refuse_drawing("", "no stroked lines");
+    refuse_drawing("<svg/>", "no stroked lines");
+    refuse_drawing("", "not XML: no element found");
     refuse_drawing("<svg>\n\n<path stroke='red' d='M0 0L1 x'/></svg>",
                    "svg:3: path data cannot be read from \"L1 x\" on");
     refuse_drawing("<svg><path stroke='red' d='L1 1'/></svg>", "\"L1 1\"");
     refuse_drawing("<svg><path stroke='red' d='M0 0L0x1 nan'/></svg>", "path data");
-    refuse_drawing("<svg>\n<line x1='0' stroke='red'", "svg:2: a tag does not end");
-    refuse_drawing("<svg><!-- ", "does not end");
-    refuse_drawing("<svg><!DOCTYPE [ >", "does not end");
+    refuse_drawing("<svg>\n<line x1='0' stroke='red'", "svg:2: not XML: unclosed token");
+    refuse_drawing("<svg><!-- ", "not XML: unclosed token");
+    refuse_drawing("<svg>\n<g>\n</svg>", "svg:3: not XML: mismatched tag");
+    refuse_drawing("<svg><a b='1' b='2'/></svg>", "not XML: duplicate attribute");
     refuse_drawing("<svg><g transform='turn(3)'></g></svg>", "transform cannot be read");
     refuse_drawing("<svg><polyline stroke='red' points='0 0 1 q'/></svg>", "list of points");
     refuse_drawing("<svg><line stroke='red' x2='1' y2='1'/></svg>", "no closed outline");
+}
+
+// Entities are put in, as drawing programs use them; those that double sixty times are refused at once.
+static void entities_are_put_in_but_cannot_blow_up(void** state) {
+    (void)state;
+    ruga_crease_pattern p;
+    draw_text("<!DOCTYPE svg [<!ENTITY m '#f00'><!ENTITY half '5'>]><svg>" SHEET
+              "<line stroke='&m;' x1='&half;' y1='0' x2='&half;' y2='10'/></svg>",
+              &p);
+    assert_near(length_of(&p, RUGA_ASSIGNMENT_MOUNTAIN), 10, 1e-12);
+    ruga_crease_pattern_clear(&p);
+    draw_text("<!DOCTYPE svg [<!ENTITY away SYSTEM 'file:///etc/hostname'>]><svg>" SHEET
+              "<style>&away;</style></svg>",
+              &p);
+    ruga_crease_pattern_clear(&p);
+    char text[8192] = "<!DOCTYPE svg [<!ENTITY e0 'some text that is to be repeated'>";
+    for (int k = 1; k <= 60; k++) {
+        size_t length = strlen(text);
+        (void)snprintf(text + length, sizeof text - length, "<!ENTITY e%d '&e%d;&e%d;'>", k, k - 1, k - 1);
+    }
+    size_t length = strlen(text);
+    (void)snprintf(text + length, sizeof text - length, "]><svg>" SHEET "<style>&e60;</style></svg>");
+    refuse_drawing(text, "amplification");
 }
 
 // ------------------------------------------------------------------------------- real patterns
@@ -681,6 +706,7 @@ int main(void) {
         cmocka_unit_test(strokes_say_what_lines_are),
         cmocka_unit_test(all_path_commands_and_transforms_are_drawn),
         cmocka_unit_test(broken_drawings_are_refused_with_the_line),
+        cmocka_unit_test(entities_are_put_in_but_cannot_blow_up),
         cmocka_unit_test(real_patterns_are_read_as_others_read_them),
         cmocka_unit_test(drawings_and_files_of_one_pattern_agree),
         cmocka_unit_test(real_patterns_can_be_cut_into_meshes_that_know_nothing_of_them),
