@@ -64,5 +64,9 @@ ruga_status ruga_crease_pattern_arrange(ruga_crease_pattern* pattern, double wel
 // label of a curve is the first of its edges. Flat lines only where `flat`. `style` gives the freedom.
 ruga_status ruga_crease_pattern_curves(const ruga_crease_pattern* pattern, const ruga_curve* style, bool flat,
                                        ruga_curves* curves);
+// The other way: curves whose labels are assignments, and the boundary of a mesh as the border. Nothing is
+// arranged.
+ruga_status ruga_crease_pattern_add_curves(ruga_crease_pattern* pattern, const ruga_curves* curves);
+ruga_status ruga_crease_pattern_add_boundary(ruga_crease_pattern* pattern, const ruga_mesh* mesh);
 
 #endif

@@ -37,4 +37,8 @@ typedef struct ruga_fold_frame {
 ruga_status ruga_fold_write(const char* path, const ruga_crease_pattern* pattern, bool flat, int frame_count,
                             const ruga_fold_frame* frame);
 
+// A drawing of a flat pattern in the colours that ruga_svg_read knows, one unit of it `unit` m: each chain of
+// lines is a path, so that a drawing program takes it as one.
+ruga_status ruga_svg_write(const char* path, const ruga_crease_pattern* pattern, double unit);
+
 #endif

@@ -14,6 +14,7 @@
 #include "core/vec3.h"
 #include "io/svg_path.h"
 #include "io/text.h"
+#include "io/writer.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -463,4 +464,70 @@ ruga_status ruga_svg_read(const char* path, double scale, double tolerance, ruga
         ruga_crease_pattern_clear(pattern);
     }
     return status;
+}
+
+// ------------------------------------------------------------------------------- writing
+
+static void begin_path(ruga_writer* w, ruga_assignment assignment) {
+    static const char* const colours[RUGA_ASSIGNMENT_COUNT] = {"#000000", "#ff0000", "#0000ff",
+                                                               "#ffff00", "#ff00ff", "#00ff00"};
+    (void)fprintf(w->file, "<path stroke=\"%s\" d=\"M", colours[assignment]);
+}
+
+static void write_point(ruga_writer* w, const double x[3], double unit) {
+    ruga_writer_double(w, x[0] / unit);
+    ruga_writer_double(w, -x[1] / unit);
+}
+
+static void write_head(ruga_writer* w, const ruga_crease_pattern* p, double unit) {
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int v = 0; v < p->vertex_count; v++) {
+        for (int i = 0; i < 2; i++) {
+            low[i] = fmin(low[i], p->position[v][i] / unit);
+            high[i] = fmax(high[i], p->position[v][i] / unit);
+        }
+    }
+    double wide = high[0] - low[0], tall = high[1] - low[1], margin = 0.02 * fmax(wide, tall);
+    const double box[4] = {low[0] - margin, -high[1] - margin, wide + 2 * margin, tall + 2 * margin};
+    (void)fputs("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"", w->file);
+    for (int i = 0; i < 4; i++) {
+        ruga_writer_double(w, box[i]);
+    }
+    (void)fputs("\" fill=\"none\" stroke-width=\"", w->file);
+    ruga_writer_double(w, 0.1 * margin);
+    (void)fputs("\">\n", w->file);
+}
+
+ruga_status ruga_svg_write(const char* path, const ruga_crease_pattern* pattern, double unit) {
+    ruga_curves curves = {0};
+    ruga_writer w;
+    ruga_status status = ruga_crease_pattern_curves(pattern, &(ruga_curve){.label = 0}, true, &curves);
+    if (status == RUGA_OK) {
+        status = ruga_writer_open(path, &w);
+    }
+    if (status != RUGA_OK) {
+        ruga_curves_clear(&curves);
+        return status;
+    }
+    write_head(&w, pattern, unit);
+    for (int e = 0; e < pattern->edge_count; e++) {
+        const ruga_crease_pattern_edge* edge = &pattern->edge[e];
+        if (edge->assignment == RUGA_ASSIGNMENT_BORDER) {
+            begin_path(&w, edge->assignment);
+            write_point(&w, pattern->position[edge->vertex[0]], unit);
+            write_point(&w, pattern->position[edge->vertex[1]], unit);
+            (void)fputs("\"/>\n", w.file);
+        }
+    }
+    for (int k = 0; k < curves.count; k++) {
+        const ruga_curve* c = &curves.curve[k];
+        begin_path(&w, pattern->edge[c->label].assignment);
+        for (int i = 0; i < c->point_count; i++) {
+            write_point(&w, c->point[i], unit);
+        }
+        (void)fputs(c->closed ? "z\"/>\n" : "\"/>\n", w.file);
+    }
+    (void)fputs("</svg>\n", w.file);
+    ruga_curves_clear(&curves);
+    return ruga_writer_close(&w, RUGA_OK);
 }

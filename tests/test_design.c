@@ -7,6 +7,7 @@
 #include "crease/design.h"
 #include "crease/flat.h"
 #include "io/fold.h"
+#include "mesh/make.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -150,9 +151,55 @@ static void vertices_that_cannot_fold_flat_are_named(void** state) {
     ruga_crease_pattern_clear(&p);
 }
 
+static void curves_can_be_written_edited_and_read_back(void** state) {
+    (void)state;
+    ruga_mesh mesh;
+    ruga_curves curves = {0}, again = {0};
+    ruga_crease_pattern p = {0}, q;
+    const ruga_make_def def = {.shape = RUGA_SHAPE_SHEET, .size = {1, 0.5}, .edge = 0.1};
+    const double bent[4][3] = {{-0.5, 0.1}, {-0.1, 0.2}, {0.2, -0.1}, {0.3, 0.1}},
+                 round[3][3] = {{-0.3, -0.2}, {-0.2, -0.2}, {-0.2, -0.1}};
+    const ruga_curve valley = {.label = RUGA_ASSIGNMENT_VALLEY},
+                     mountain = {.label = RUGA_ASSIGNMENT_MOUNTAIN, .closed = true};
+    assert_ok(ruga_mesh_make(&def, &mesh));
+    assert_ok(ruga_curves_add_polyline(&curves, &valley, 4, bent));
+    assert_ok(ruga_curves_add_polyline(&curves, &mountain, 3, round));
+    assert_ok(ruga_crease_pattern_add_curves(&p, &curves));
+    assert_ok(ruga_crease_pattern_add_boundary(&p, &mesh));
+    for (int drawing = 0; drawing < 2; drawing++) {
+        const ruga_fold_frame frame = {(const double*)p.position, NULL, 0};
+        assert_ok(drawing ? ruga_svg_write("test_design.svg", &p, 1e-3)
+                          : ruga_fold_write("test_design.fold", &p, true, 1, &frame));
+        assert_ok(drawing ? ruga_svg_read("test_design.svg", 1e-3, 1e-3, &q)
+                          : ruga_fold_read("test_design.fold", 0, 1, &q));
+        assert_meshed_area(&q, 0.5);
+        assert_ok(ruga_crease_pattern_curves(&q, &(ruga_curve){.label = 0}, false, &again));
+        assert_int_equal(again.count, 2);
+        for (int k = 0; k < 2; k++) {
+            const ruga_curve *a = &again.curve[k], *b = &curves.curve[k];
+            assert_int_equal(a->point_count, b->point_count);
+            assert_int_equal(a->closed, b->closed);
+            assert_int_equal(q.edge[a->label].assignment, b->label);
+            for (int i = 0; i < b->point_count; i++) {
+                double nearest = 1;
+                for (int j = 0; j < a->point_count; j++) {
+                    nearest = fmin(nearest, ruga_distance(a->point[j], b->point[i]));
+                }
+                assert_near(nearest, 0, 1e-12);
+            }
+        }
+        ruga_curves_clear(&again);
+        ruga_crease_pattern_clear(&q);
+    }
+    ruga_curves_clear(&curves);
+    ruga_crease_pattern_clear(&p);
+    ruga_mesh_clear(&mesh);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(made_patterns_have_their_size_and_fold_flat),
+        cmocka_unit_test(curves_can_be_written_edited_and_read_back),
         cmocka_unit_test(vertices_that_cannot_fold_flat_are_named),
     };
     return cmocka_run_group_tests_name("design", tests, NULL, check_no_leak);
