@@ -5,6 +5,7 @@
 // killed is continued by --resume, with the same bits as one left alone.
 #include "app/command.h"
 #include "app/console.h"
+#include "app/creases.h"
 #include "app/frames.h"
 #include "app/interrupt.h"
 #include "app/meter.h"
@@ -40,7 +41,8 @@ typedef struct job {
     ruga_model* model;
     ruga_state* state;
     ruga_result* result;
-    double* restart;
+    double *restart, *force;
+    ruga_crease_table creases;
     ruga_meter meter;
     bool continues;             // RESULT has frames that stay
     int whole;                  // the last whole frame in RESULT; -1 = none
@@ -143,7 +145,7 @@ static void warn_of_coarse_mesh(const job* j) {
 static ruga_status open_result(job* j) {
     const ruga_model* model = j->model;
     ruga_result_header header = {
-        .mesh = &j->scene.mesh,
+        .mesh = ruga_model_shown(model),
         .lattice = model->has_interior ? &model->lattice : NULL,
         .scene_text = j->scene.text,
         .scene_hash = j->scene.hash,
@@ -159,7 +161,11 @@ static ruga_status open_result(job* j) {
         .vertex_young = model->variation.young,
         .vertex_growth = model->variation.growth,
         .vertex_wavelength = model->variation.wavelength,
+        .handle_count = model->handle_count,
     };
+    RUGA_TRY(ruga_crease_table_create(model, &j->creases));
+    header.creases = j->creases.result.segment_count > 0 ? &j->creases.result : NULL;
+    RUGA_TRY(RUGA_NEW_ZERO(j->force, 3 * (size_t)model->handle_count));
     RUGA_TRY(RUGA_NEW_ZERO(j->restart, header.restart_doubles));
     if (!j->continues) {
         // A file without a whole frame, left by a killed run, is no one's result.
@@ -181,7 +187,12 @@ static ruga_status write_frame(job* j, const ruga_report* report) {
         .lattice_position = ruga_state_lattice(j->state),
         .report = *report,
         .restart = j->restart,
+        .crease_angle = ruga_state_crease_angles(j->state),
+        .crease_rest = ruga_state_crease_rests(j->state),
+        .gap = ruga_state_gap(j->state),
+        .handle_force = j->force,
     };
+    RUGA_TRY(ruga_state_handle_forces(j->state, j->force));
     RUGA_TRY(ruga_result_append(j->result, &frame));
     j->whole = ruga_state_frame(j->state);
     count_outcome(j, report->outcome);
@@ -293,6 +304,8 @@ static ruga_status finish(job* j, ruga_status status, int* exit_status) {
 
 static void clear(job* j) {
     ruga_release(j->restart);
+    ruga_release(j->force);
+    ruga_crease_table_clear(&j->creases);
     ruga_state_destroy(&j->state);
     ruga_model_destroy(&j->model);
     ruga_scene_clear(&j->scene);

@@ -234,6 +234,13 @@ static void describe_value(const ruga_key* key, ruga_string* text) {
     case RUGA_KEY_PAIR:
         ruga_string_add(text, "%s, or 2 x %s", plain ? "number" : unit, plain ? "number" : unit);
         break;
+    case RUGA_KEY_POINTS:
+        ruga_string_add(text, "list of rows of %d x %s", key->count, plain ? "number" : unit);
+        break;
+    case RUGA_KEY_VALUES:
+        ruga_string_add(text, "%s, or a list of them", plain ? "number" : unit);
+        ruga_string_add(text, key->choices ? ", or the word %s" : "", key->choices);
+        break;
     case RUGA_KEY_LATER:
         ruga_string_add(text, "not available yet");
         break;

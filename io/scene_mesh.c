@@ -5,6 +5,7 @@
 // remesh -> doctor; and the regions of handles, which can only be judged on it.
 #include "constraints/attachments.h"
 #include "core/memory.h"
+#include "io/fold.h"
 #include "io/mesh_file.h"
 #include "io/scene_read.h"
 #include "mesh/doctor.h"
@@ -29,6 +30,17 @@ ruga_status ruga_scene_warn(ruga_scene* scene, const char* format, ...) {
     return RUGA_OK;
 }
 
+// What lies within a crease pattern's outline.
+static ruga_status read_outline(const char* path, ruga_mesh* mesh) {
+    ruga_crease_pattern pattern = {0};
+    ruga_status status = ruga_scene_read_pattern(path, 0, &pattern);
+    if (status == RUGA_OK) {
+        status = ruga_crease_pattern_mesh(&pattern, path, mesh);
+    }
+    ruga_crease_pattern_clear(&pattern);
+    return status;
+}
+
 // A file that is not there is the scene's mistake, not the disk's.
 static ruga_status read_file(const char* path, ruga_mesh* mesh) {
     FILE* file = fopen(path, "rb");
@@ -37,8 +49,10 @@ static ruga_status read_file(const char* path, ruga_mesh* mesh) {
     if (file) {
         (void)fclose(file);
     }
-    return failed ? ruga_fail(RUGA_BAD_INPUT, "%s cannot be read: %s", path, strerror(error))
-                  : ruga_mesh_read(path, mesh);
+    if (failed) {
+        return ruga_fail(RUGA_BAD_INPUT, "%s cannot be read: %s", path, strerror(error));
+    }
+    return ruga_scene_is_pattern(path) ? read_outline(path, mesh) : ruga_mesh_read(path, mesh);
 }
 
 ruga_status ruga_scene_path(const char* directory, const char* name, ruga_pool* pool, char** path) {
