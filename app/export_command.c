@@ -4,6 +4,7 @@
 // ruga export: frames of a result as mesh files.
 #include "app/command.h"
 #include "app/console.h"
+#include "app/export_fold.h"
 #include "app/frames.h"
 #include "core/memory.h"
 #include "io/mesh_file.h"
@@ -16,7 +17,7 @@
 enum { SUBDIVISIONS_MAX = 6 };
 
 static const ruga_option options[] = {
-    {"--format", NULL, "NAME", "obj or ply [by the file's ending]", false},
+    {"--format", NULL, "NAME", "obj, ply or fold [by the file's ending]", false},
     {"--frames", NULL, "A:B", "frames, both ends included [all for a name with %04d, otherwise the last]",
      false},
     {"--frame", "-f", "K", "one frame, counted from 0", false},
@@ -27,7 +28,7 @@ static const ruga_option options[] = {
 };
 
 static const char formats[] = "obj|ply|gltf|pc2|mdd|usda|xdmf|fold";
-enum { FORMAT_OBJ, FORMAT_PLY, FORMAT_COUNT_NOW };
+enum { FORMAT_OBJ, FORMAT_PLY, FORMAT_COUNT_NOW, FORMAT_FOLD = 7 };
 
 typedef struct job {
     const ruga_arguments* arguments;
@@ -42,16 +43,17 @@ typedef struct job {
 
 static ruga_status choose_format(const ruga_arguments* arguments, const char* path, int* format) {
     const char* dot = strrchr(path, '.');
-    *format = dot && strcmp(dot, ".ply") == 0   ? FORMAT_PLY
-              : dot && strcmp(dot, ".obj") == 0 ? FORMAT_OBJ
-                                                : -1;
+    *format = dot && strcmp(dot, ".ply") == 0    ? FORMAT_PLY
+              : dot && strcmp(dot, ".obj") == 0  ? FORMAT_OBJ
+              : dot && strcmp(dot, ".fold") == 0 ? FORMAT_FOLD
+                                                 : -1;
     RUGA_TRY(ruga_option_choice(arguments, "--format", formats, format));
     if (*format < 0) {
         return ruga_fail(RUGA_BAD_INPUT, "%s: say which format is wanted: --format obj or --format ply",
                          path);
     }
-    if (*format >= FORMAT_COUNT_NOW) {
-        return ruga_fail(RUGA_BAD_INPUT, "--format: %s is not available yet; obj and ply are",
+    if (*format >= FORMAT_COUNT_NOW && *format != FORMAT_FOLD) {
+        return ruga_fail(RUGA_BAD_INPUT, "--format: %s is not available yet; obj, ply and fold are",
                          ruga_value(arguments, "--format"));
     }
     return RUGA_OK;
@@ -118,6 +120,9 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     job j = {.arguments = arguments};
     RUGA_TRY(ruga_required(arguments, "--output", &j.pattern));
     RUGA_TRY(choose_format(arguments, j.pattern, &j.format));
+    if (j.format == FORMAT_FOLD) {
+        return ruga_export_fold(arguments, j.pattern);
+    }
     RUGA_TRY_DONE(ruga_open_frames(arguments, j.pattern, &j.reader, &range));
     RUGA_TRY_DONE(prepare(&j));
     for (int frame = range.first; frame <= range.last; frame++) {
@@ -135,11 +140,13 @@ done:
 const ruga_command ruga_export_command = {
     .name = "export",
     .operand = "RESULT",
-    .usage = "--format obj|ply [--frames A:B] [--subdivide N] [--unit U] -o FILE_OR_PATTERN",
+    .usage = "--format obj|ply|fold [--frames A:B] [--subdivide N] [--unit U] -o FILE_OR_PATTERN",
     .summary = "write frames of a result as mesh files",
     .about = "Writes the skin with its texture coordinates, groups and normals, in the input mesh's unit "
              "unless told\n"
-             "otherwise. Each file is written whole or not at all; its name is printed.",
+             "otherwise. FOLD files hold all frames unless told, with the angles of the creases, in metres. "
+             "Each file is\n"
+             "written whole or not at all; its name is printed.",
     .example = "    ruga export pillow.h5 --format obj --frames 0:50 --subdivide 1 -o pillow_%04d.obj",
     .options = options,
     .run = run,
