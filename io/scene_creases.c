@@ -4,6 +4,7 @@
 // Entries of `creases` to the creases of a def: one for a curve that is drawn, one for each line of a
 // pattern.
 #include "core/memory.h"
+#include "core/vec3.h"
 #include "crease/flat.h"
 #include "io/fold.h"
 #include "io/scene_read.h"
@@ -12,6 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
+static const double FLAT = 1e-6;          // rad off half a turn
 static const double SVG_TOLERANCE = 1e-3; // of a drawing's size, for curves
 
 static bool ends_with(const char* name, const char* end) {
@@ -101,7 +103,8 @@ static ruga_status warn_of_faults(loader* l, const ruga_scene_crease* crease, co
     char text[200];
     bool flat = crease->rest.word && !pattern->folded;
     for (int e = 0; e < pattern->edge_count; e++) {
-        flat = flat && isnan(pattern->edge[e].angle);
+        double angle = ruga_crease_pattern_rest(&pattern->edge[e]);
+        flat = flat && (angle == 0 || fabs(fabs(angle) - RUGA_PI) < FLAT);
     }
     if (!flat) {
         return RUGA_OK;
