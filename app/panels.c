@@ -147,8 +147,8 @@ static ruga_status measure_frames(job* j) {
     }
     RUGA_TRY_DONE(RUGA_NEW(position, 3 * (size_t)mesh->vertex_count));
     RUGA_TRY_DONE(RUGA_NEW(embedded, 3 * (size_t)mesh->vertex_count));
-    RUGA_TRY_DONE(
-        ruga_measure_create_local(mesh, header->wavelength, header->vertex_wavelength, header->seed, &measure));
+    RUGA_TRY_DONE(ruga_measure_create_local(mesh, header->wavelength, header->vertex_wavelength, header->seed,
+                                            &measure));
     for (int frame = 0; frame < j->panels->frame_count; frame++) {
         ruga_measured m;
         RUGA_TRY_DONE(ruga_result_read_frame(j->reader, frame, NULL, position, embedded, NULL));

@@ -62,6 +62,7 @@ target_include_directories(openexr_core SYSTEM INTERFACE ${OPENEXR_CORE_INCLUDE}
 target_link_libraries(openexr_core INTERFACE ${OPENEXR_CORE_LIBRARY})
 pkg_check_modules(YAML REQUIRED IMPORTED_TARGET yaml-0.1)
 pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
+pkg_check_modules(EXPAT REQUIRED IMPORTED_TARGET expat)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-svg)
 find_path(UDUNITS_INCLUDE udunits2.h REQUIRED)
 find_library(UDUNITS_LIBRARY udunits2 REQUIRED)

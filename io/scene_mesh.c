@@ -274,12 +274,17 @@ static ruga_status check_selection(const ruga_yaml_node* node, const char* shown
     RUGA_TRY(ruga_yaml_fail_at(ruga_region_vertices(&handle->region, &scene->mesh, &count, selected), node,
                                shown));
     // fix and move act on the interior too, where a region may hold material without any of the surface.
-    bool on_skin = !scene->def.has_interior || handle->hold == RUGA_HOLD_SKIN ||
-                   (handle->kind != RUGA_HANDLE_FIX && handle->kind != RUGA_HANDLE_MOVE);
+    bool holds = handle->kind == RUGA_HANDLE_FIX || handle->kind == RUGA_HANDLE_MOVE;
+    bool on_skin = !scene->def.has_interior || handle->hold == RUGA_HOLD_SKIN || !holds;
     double min[3], max[3];
     ruga_mesh_bounds(&scene->mesh, min, max);
     bool anything = count > 0 || (!on_skin && region_may_hold_interior(&handle->region,
                                                                        scene->def.lattice.fill, min, max));
+    // Corners of creases become vertices only when the mesh is cut; the model refuses what holds nothing
+    // then.
+    const ruga_scene_parts* parts = scene->storage;
+    anything = anything || (holds && parts->crease_count > 0 &&
+                            region_may_hold_interior(&handle->region, RUGA_FILL_MESH, min, max));
     return anything
                ? RUGA_OK
                : ruga_yaml_fail(node, shown,
