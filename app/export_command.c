@@ -5,6 +5,7 @@
 // USD and point caches all of them; XDMF points into the result itself.
 #include "app/command.h"
 #include "app/console.h"
+#include "app/export_fold.h"
 #include "app/frames.h"
 #include "core/memory.h"
 #include "io/animation.h"
@@ -20,9 +21,11 @@
 enum { SUBDIVISIONS_MAX = 6 };
 static const double RATE_OF_ONE_FRAME = 24; // per second, where there is no time between frames
 
+static const char formats[] = "obj|ply|gltf|pc2|mdd|usda|xdmf|fold";
+
 static const ruga_option options[] = {
-    {"--format", NULL, "NAME", "obj, ply, gltf, pc2, mdd, usda or xdmf [by the file's ending; .glb is gltf]",
-     false},
+    {"--format", NULL, formats,
+     "obj, ply, gltf, pc2, mdd, usda, xdmf or fold [by the file's ending; .glb is gltf]", false},
     {"--frames", NULL, "A:B",
      "frames, both ends included [obj, ply: all for a name with %04d, otherwise\n"
      "the last; the others: all]",
@@ -30,7 +33,7 @@ static const ruga_option options[] = {
     {"--frame", "-f", "K", "one frame, counted from 0", false},
     {"--subdivide", NULL, "N", "steps of Loop subdivision, 0 to 6 [0]", false},
     {"--unit", "-u", "UNIT", "unit of the coordinates written, such as mm [that of the input mesh]", false},
-    {"--up", NULL, "AXIS",
+    {"--up", NULL, "y|z",
      "the axis that points up, y or z; nothing is turned, but files that can say it do [z]", false},
     {"--fps", NULL, "R", "frames per second at which the frames are shown [that of their times]", false},
     {"--name", NULL, "NAME", "name of the object [that of RESULT]", false},
@@ -39,7 +42,6 @@ static const ruga_option options[] = {
     {0},
 };
 
-static const char formats[] = "obj|ply|gltf|pc2|mdd|usda|xdmf|fold";
 typedef enum format { OBJ, PLY, GLTF, PC2, MDD, USDA, XDMF, FOLD } format;
 
 typedef struct job {
@@ -75,9 +77,6 @@ static ruga_status choose_format(const ruga_arguments* arguments, const char* pa
     if (*chosen < 0) {
         return ruga_fail(RUGA_BAD_INPUT,
                          "%s: say which format is wanted, such as --format obj or --format gltf", path);
-    }
-    if (*chosen == FOLD) {
-        return ruga_fail(RUGA_BAD_INPUT, "--format: fold is not available yet");
     }
     if (*chosen == GLTF && dot && strcmp(dot, ".gltf") == 0) {
         return ruga_fail(RUGA_BAD_INPUT, "%s: the binary form is written, whose names end in .glb", path);
@@ -260,6 +259,9 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     job j = {.arguments = arguments};
     RUGA_TRY(ruga_required(arguments, "--output", &j.pattern));
     RUGA_TRY(choose_format(arguments, j.pattern, &j.format));
+    if (j.format == FOLD) {
+        return ruga_export_fold(arguments, j.pattern);
+    }
     RUGA_TRY(ruga_check_output(j.pattern));
     RUGA_TRY(ruga_open_result(ruga_operand(arguments), &j.reader));
     RUGA_TRY_DONE(prepare(&j));
@@ -277,14 +279,15 @@ done:
 const ruga_command ruga_export_command = {
     .name = "export",
     .operand = "RESULT",
-    .usage = "--format obj|ply|gltf|pc2|mdd|usda|xdmf [--frames A:B] [--subdivide N] [--unit U] -o "
+    .usage = "--format obj|ply|gltf|pc2|mdd|usda|xdmf|fold [--frames A:B] [--subdivide N] [--unit U] -o "
              "FILE_OR_PATTERN",
     .summary = "write frames of a result for other programs",
     .about = "Writes the skin with its texture coordinates, groups and normals, in the input mesh's unit "
              "unless told\n"
              "otherwise: obj and ply a file for each frame; gltf (binary), usda and the point caches pc2 and "
              "mdd one\n"
-             "file with all of them; xdmf a page that shows ParaView the result itself. Each file is written "
+             "file with all of them; xdmf a page that shows ParaView the result itself; fold the creases "
+             "with their angles, in metres. Each file is written "
              "whole or\n"
              "not at all; its name is printed.",
     .example = "    ruga export pillow.h5 --format obj --frames 0:50 --subdivide 1 -o pillow_%04d.obj\n"

@@ -275,9 +275,9 @@ class Runs(Case):
 
         m = self.json("measure", "a.h5")
         keys = ("frame time wavelength wavelength_fft wavelength_predicted amplitude outcome residual_shell "
-                "residual_coupled constraint_residual volume energy creases")
+                "residual_coupled constraint_residual volume energy crossings creases")
         self.assertEqual(set(m), set(keys.split()))
-        self.assertEqual(set(m["energy"]), set("membrane bending foundation interior kinetic external".split()))
+        self.assertEqual(set(m["energy"]), set("membrane bending hinge foundation interior kinetic external".split()))
         self.assertEqual((m["frame"], m["outcome"], m["creases"]), (10, "minimum", []))
         self.assertAlmostEqual(m["wavelength"], m["wavelength_predicted"], delta=0.12 * m["wavelength_predicted"])
         self.assertGreater(m["amplitude"], 1e-3)
