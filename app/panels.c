@@ -147,8 +147,8 @@ static ruga_status measure_frames(job* j) {
     }
     RUGA_TRY_DONE(RUGA_NEW(position, 3 * (size_t)mesh->vertex_count));
     RUGA_TRY_DONE(RUGA_NEW(embedded, 3 * (size_t)mesh->vertex_count));
-    RUGA_TRY_DONE(
-        ruga_measure_create_local(mesh, header->wavelength, header->vertex_wavelength, header->seed, &measure));
+    RUGA_TRY_DONE(ruga_measure_create_local(mesh, header->wavelength, header->vertex_wavelength, header->seed,
+                                            &measure));
     for (int frame = 0; frame < j->panels->frame_count; frame++) {
         ruga_measured m;
         RUGA_TRY_DONE(ruga_result_read_frame(j->reader, frame, NULL, position, embedded, NULL));
@@ -316,7 +316,8 @@ static ruga_status find_kind(const char* key, size_t length, int* kind) {
             *kind = k;
             return RUGA_OK;
         }
-        (void)strcat(strcat(names, k > 0 ? "|" : ""), name);
+        size_t used = strlen(names);
+        (void)snprintf(names + used, sizeof names - used, "%s%s", k > 0 ? "|" : "", name);
     }
     char word[48];
     (void)snprintf(word, sizeof word, "%.*s", (int)(length < 40 ? length : 40), key);
@@ -328,7 +329,7 @@ static ruga_status find_kind(const char* key, size_t length, int* kind) {
 static ruga_status read_named(job* j, const char* what) {
     for (const char* key = what; *key;) {
         size_t length = strcspn(key, ",");
-        int kind;
+        int kind = 0;
         RUGA_TRY(find_kind(key, length, &kind));
         if (j->panels->count >= RUGA_PANELS_MAX) {
             return ruga_fail(RUGA_BAD_INPUT, "--what: at most %d plots on a page", RUGA_PANELS_MAX);
