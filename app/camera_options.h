@@ -13,7 +13,7 @@
      "corner, front, back, left, right, top, bottom, or azimuth,elevation such as\n"                         \
      "30deg,20deg [corner]",                                                                                 \
      false},                                                                                                 \
-        {"--up", NULL, "AXIS", "the axis that points up: x, y or z [against gravity, otherwise z]", false},  \
+        {"--up", NULL, "x|y|z", "the axis that points up: x, y or z [against gravity, otherwise z]", false}, \
         {"--azimuth", NULL, "ANGLE", "where the camera stands, turned about the up axis [-63 deg]", false},  \
     {                                                                                                        \
         "--elevation", NULL, "ANGLE", "how far above the horizon the camera stands [34 deg]", false          \

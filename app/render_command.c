@@ -21,7 +21,7 @@ static const ruga_option options[] = {
     {"--frames", NULL, "A:B", "frames, both ends included", false},
     {"--width", NULL, "PIXELS", "width of the picture [1280]", false},
     {"--height", NULL, "PIXELS", "height of the picture [960]", false},
-    {"--color", NULL, "NAME",
+    {"--color", NULL, RUGA_COLORING_NAMES,
      "clay; displacement: how far the skin stands off the interior; stress: von Mises'\n"
      "in the skin; clusters, elements: of the coupling and the lattice; creases: their\n"
      "fold angles; thickness, young or wavelength of a skin that varies [clay]",

@@ -5,6 +5,7 @@
 // killed is continued by --resume, with the same bits as one left alone.
 #include "app/command.h"
 #include "app/console.h"
+#include "app/creases.h"
 #include "app/frames.h"
 #include "app/interrupt.h"
 #include "app/meter.h"
@@ -42,7 +43,8 @@ typedef struct job {
     ruga_model* model;
     ruga_state* state;
     ruga_result* result;
-    double* restart;
+    double *restart, *force;
+    ruga_crease_table creases;
     ruga_meter meter;
     ruga_preview preview;
     bool continues;             // RESULT has frames that stay
@@ -143,10 +145,21 @@ static void warn_of_coarse_mesh(const job* j) {
     }
 }
 
+static void warn_of_loose_fit(const job* j) {
+    const ruga_follow* follow = &j->model->follow;
+    if (follow->count > 0 && follow->error > 0.02 * j->model->extent) {
+        ruga_warn(
+            j->arguments,
+            "the lattice follows the moving surface to within %.3g mm (root mean square); more lattice.cells "
+            "follow it closer",
+            1e3 * follow->error);
+    }
+}
+
 static ruga_status open_result(job* j) {
     const ruga_model* model = j->model;
     ruga_result_header header = {
-        .mesh = &j->scene.mesh,
+        .mesh = ruga_model_shown(model),
         .lattice = model->has_interior ? &model->lattice : NULL,
         .scene_text = j->scene.text,
         .scene_hash = j->scene.hash,
@@ -162,7 +175,11 @@ static ruga_status open_result(job* j) {
         .vertex_young = model->variation.young,
         .vertex_growth = model->variation.growth,
         .vertex_wavelength = model->variation.wavelength,
+        .handle_count = model->handle_count,
     };
+    RUGA_TRY(ruga_crease_table_create(model, &j->creases));
+    header.creases = j->creases.result.segment_count > 0 ? &j->creases.result : NULL;
+    RUGA_TRY(RUGA_NEW_ZERO(j->force, 3 * (size_t)model->handle_count));
     RUGA_TRY(RUGA_NEW_ZERO(j->restart, header.restart_doubles));
     if (!j->continues) {
         // A file without a whole frame, left by a killed run, is no one's result.
@@ -184,7 +201,12 @@ static ruga_status write_frame(job* j, const ruga_report* report) {
         .lattice_position = ruga_state_lattice(j->state),
         .report = *report,
         .restart = j->restart,
+        .crease_angle = ruga_state_crease_angles(j->state),
+        .crease_rest = ruga_state_crease_rests(j->state),
+        .gap = ruga_state_gap(j->state),
+        .handle_force = j->force,
     };
+    RUGA_TRY(ruga_state_handle_forces(j->state, j->force));
     RUGA_TRY(ruga_result_append(j->result, &frame));
     j->whole = ruga_state_frame(j->state);
     count_outcome(j, report->outcome);
@@ -203,6 +225,7 @@ static ruga_status simulate(job* j) {
     int frames = j->scene.def.frames;
     RUGA_TRY(ruga_model_create(&j->scene.def, &j->model));
     warn_of_coarse_mesh(j);
+    warn_of_loose_fit(j);
     ruga_warn_of_handles(j->arguments, j->model);
     RUGA_TRY(ruga_state_create(j->model, &j->state));
     RUGA_TRY(open_result(j));
@@ -303,6 +326,8 @@ static ruga_status finish(job* j, ruga_status status, int* exit_status) {
 static void clear(job* j) {
     ruga_preview_clear(&j->preview);
     ruga_release(j->restart);
+    ruga_release(j->force);
+    ruga_crease_table_clear(&j->creases);
     ruga_state_destroy(&j->state);
     ruga_model_destroy(&j->model);
     ruga_scene_clear(&j->scene);

@@ -39,7 +39,7 @@ typedef struct job {
     ruga_measure* measure;
     ruga_panels panels;
     double *position, *embedded;
-    float* displacement; // [T][V] m
+    float* displacement;                   // [T][V] m
     double low[3], high[3], step, largest; // of all frames; largest displacement, m
     uint16_t* place;                       // [V][3] of the frame before, and the embedded surface's
     uint16_t* embedded_place;

@@ -26,8 +26,9 @@ static uint64_t hash_bytes(uint64_t hash, const char* bytes, size_t length) {
 static uint64_t hash_values(const ruga_scene_parts* parts) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (const ruga_scene_value* v = parts->first_value; v; v = v->next) {
-        // skin.vary itself stands there only where it has no entries, which have keys of their own.
-        if (strcmp(v->key, "time.frames") != 0 && strcmp(v->key, "skin.vary") != 0) {
+        // skin.vary, follow and creases themselves stand there only where they have no keys of their own.
+        if (strcmp(v->key, "time.frames") != 0 && strcmp(v->key, "skin.vary") != 0 &&
+            strcmp(v->key, "follow") != 0 && strcmp(v->key, "creases") != 0) {
             hash = hash_bytes(hash, v->key, strlen(v->key) + 1);
             hash = hash_bytes(hash, v->value, strlen(v->value) + 1);
         }
@@ -43,6 +44,19 @@ static uint64_t hash_arrays(uint64_t hash, const ruga_skin_def* skin) {
             size_t size = (size_t)skin->vertex_count * (i == 2 ? 2 : 1) * sizeof(double);
             hash = hash_bytes(hash, (const char*)arrays[i], size);
         }
+    }
+    return hash;
+}
+
+// Nor is what patterns hold: creases are hashed by their points and angles.
+static uint64_t hash_creases(uint64_t hash, const ruga_model_def* def) {
+    for (int i = 0; i < def->crease_count; i++) {
+        const ruga_crease_def* crease = &def->creases[i];
+        size_t width = crease->path == RUGA_CREASE_UV ? 2 : 3;
+        hash = hash_bytes(hash, (const char*)crease->points,
+                          width * (size_t)crease->point_count * sizeof(double));
+        hash = hash_bytes(hash, (const char*)&crease->rest, sizeof crease->rest);
+        hash = hash_bytes(hash, (const char*)&crease->kind, sizeof crease->kind);
     }
     return hash;
 }
@@ -75,7 +89,9 @@ static ruga_status build(ruga_yaml_node* root, ruga_pool* tree, const char* dire
     }
     RUGA_TRY(ruga_scene_load_mesh(root, directory, scene));
     RUGA_TRY(ruga_scene_vary_skin(root, directory, scene));
-    scene->hash = hash_arrays(scene->hash, &scene->def.skin);
+    RUGA_TRY(ruga_scene_load_creases(root, directory, scene));
+    scene->hash = hash_creases(hash_arrays(scene->hash, &scene->def.skin), &scene->def);
+    RUGA_TRY(ruga_scene_follow_surface(root, directory, scene));
     scene->mesh_hash = ruga_mesh_hash(&scene->mesh);
     scene->def.mesh = ruga_mesh_as_def(&scene->mesh);
     return RUGA_OK;
@@ -159,6 +175,7 @@ done:
 void ruga_scene_clear(ruga_scene* scene) {
     ruga_scene_parts* parts = scene->storage;
     if (parts) {
+        ruga_scene_follow_clear(parts);
         ruga_pool_clear(&parts->pool);
     }
     ruga_release(parts);
