@@ -42,8 +42,9 @@ typedef struct ruga_command {
 } ruga_command;
 
 extern const ruga_command ruga_make_command, ruga_check_command, ruga_remesh_command, ruga_explain_command,
-    ruga_run_command, ruga_measure_command, ruga_export_command, ruga_render_command, ruga_validate_command,
-    ruga_sweep_command, ruga_manual_command;
+    ruga_run_command, ruga_measure_command, ruga_export_command, ruga_bake_command, ruga_render_command,
+    ruga_plot_command, ruga_view_command, ruga_creases_command, ruga_validate_command, ruga_sweep_command,
+    ruga_manual_command;
 extern const ruga_command* const ruga_commands[]; // ended by NULL
 
 // ---- arguments -----------------------------------------------------------------------------------------
