@@ -14,8 +14,10 @@
 #include <math.h>
 #include <string.h>
 
+static const char sources[] = "bending|stress";
+
 static const ruga_option options[] = {
-    {"--from", NULL, "WHAT", "bending: ridges of bending energy; stress: of compressive stress [bending]",
+    {"--from", NULL, sources, "bending: ridges of bending energy; stress: of compressive stress [bending]",
      false},
     {"--frame", "-f", "K", "the frame, counted from 0 [the last]", false},
     {"--min-length", NULL, "LENGTH", "leave out shorter curves, m [ten edges]", false},
@@ -32,7 +34,7 @@ static const ruga_option options[] = {
 static ruga_status read_def(const ruga_arguments* arguments, ruga_ridge_def* def) {
     int from = 0;
     *def = ruga_default_ridge_def();
-    RUGA_TRY(ruga_option_choice(arguments, "--from", "bending|stress", &from));
+    RUGA_TRY(ruga_option_choice(arguments, "--from", sources, &from));
     def->stress = from == 1;
     RUGA_TRY(ruga_quantity(arguments, "--min-length", "m", &def->min_length));
     RUGA_TRY(ruga_quantity(arguments, "--smooth", "m", &def->smooth));

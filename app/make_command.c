@@ -187,7 +187,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
 
 const ruga_command ruga_make_command = {
     .name = "make",
-    .operand = "SHAPE",
+    .operand = shapes,
     .usage = "[--size X[,Y[,Z]]] [--edge L | --cells N,M] [--pattern NAME] [--angle A] [--fold A] -o FILE",
     .summary = "make a sheet, slab, bar, pillow, sphere or skirt as a mesh file, or a crease pattern",
     .about =
