@@ -529,7 +529,7 @@ static void write_topology(ruga_writer* w, const ruga_crease_pattern* p) {
     for (int e = 0; e < p->edge_count; e++) {
         (void)fprintf(w->file, "%s\"%c\"", e ? ", " : "", ruga_assignment_letter(p->edge[e].assignment));
     }
-    (void)fputs("],\n\"faces_vertices\": [", w->file);
+    (void)fputs(p->face_count > 0 ? "],\n\"faces_vertices\": [" : "", w->file);
     for (int f = 0; f < p->face_count; f++) {
         (void)fputs(f ? ", [" : "[", w->file);
         for (int k = p->face_start[f]; k < p->face_start[f + 1]; k++) {

@@ -310,7 +310,7 @@ class Others(unittest.TestCase):
         self.assertIn("cannot fold flat", done.stderr)
 
     def test_cuts_open(self):
-        file, _ = self.fold("honeycombKiri", 0.9, 20, 0.01, 0.1)
+        file, _ = self.fold("honeycombKiri", 0.9, 25, 0.01, 0.1)
         rest, x = file["mesh/rest"][:], file["shell/position"][-1]
         # The two sides of a cut coincide at rest and part.
         order = np.lexsort(np.round(rest[:, :2], 9).T)
