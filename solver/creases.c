@@ -135,8 +135,8 @@ static ruga_status add_curves(int count, const ruga_crease_def* defs, const ruga
                               const ruga_connectivity* edges, ruga_creases* c, ruga_curves* curves) {
     for (int i = 0; i < count; i++) {
         RUGA_TRY(check_def(i, &defs[i]));
-        RUGA_TRY(copy_law(&defs[i], &c->law[i]));
         c->law_count = i + 1;
+        RUGA_TRY(copy_law(&defs[i], &c->law[i]));
         ruga_status status = add_curve(i, &defs[i], mesh, edges, curves);
         if (status != RUGA_OK) {
             return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "creases.%d", i) : status;
@@ -303,7 +303,11 @@ ruga_status ruga_creases_create(int count, const ruga_crease_def* defs, const ru
     RUGA_TRY(RUGA_NEW_ZERO(c, 1));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(c->law, count));
     RUGA_TRY_DONE(add_curves(count, defs, mesh, connectivity, c, &curves));
-    RUGA_TRY_DONE(ruga_raster_create(mesh, &curves, &how, &c->raster));
+    status = ruga_raster_create(mesh, &curves, &how, &c->raster);
+    if (status == RUGA_BAD_INPUT) {
+        status = ruga_fail_prefix(status, "creases");
+    }
+    RUGA_TRY_DONE(status);
     RUGA_TRY_DONE(ruga_cut_create(&c->raster, &c->cut));
     RUGA_TRY_DONE(ruga_sewing_create(&c->cut, NULL, &c->sewing));
     RUGA_TRY_DONE(ruga_connectivity_create(&c->cut.material, &c->shown));
@@ -320,16 +324,21 @@ done:
 }
 
 ruga_status ruga_creases_nodes(const ruga_creases* c, ruga_mesh* nodes) {
+    ruga_status status = RUGA_OK;
     *nodes = (ruga_mesh){0};
-    RUGA_TRY(RUGA_NEW(nodes->position, 3 * (size_t)c->cut.node_count));
-    RUGA_TRY(RUGA_NEW(nodes->triangle, 3 * (size_t)c->cut.piece_count));
+    RUGA_TRY_DONE(RUGA_NEW(nodes->position, 3 * (size_t)c->cut.node_count));
+    RUGA_TRY_DONE(RUGA_NEW(nodes->triangle, 3 * (size_t)c->cut.piece_count));
     nodes->vertex_count = c->cut.node_count;
     nodes->triangle_count = c->cut.piece_count;
     ruga_cut_rest(&c->raster, &c->cut, nodes->position);
     for (int p = 0; p < c->cut.piece_count; p++) {
         memcpy(nodes->triangle + 3 * (size_t)p, c->cut.piece[p].node, sizeof c->cut.piece[p].node);
     }
-    return RUGA_OK;
+done:
+    if (status != RUGA_OK) {
+        ruga_mesh_clear(nodes);
+    }
+    return status;
 }
 
 // A pattern of single entries lists each edge once, by its lower end.

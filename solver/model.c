@@ -211,15 +211,52 @@ static void hold_node(ruga_model* model, int node, int h) {
     }
 }
 
-// All copies of a vertex.
-static void hold_vertex(ruga_model* model, int v, int h) {
-    const ruga_creases* creases = model->creases;
-    for (int k = creases ? creases->cut.copy_start[v] : 0; creases && k < creases->cut.copy_start[v + 1]; k++) {
-        hold_node(model, creases->cut.copy[k], h);
+// Whether a place of a piece is in the handle's region: a vertex that it selects, or a point between two of these, or
+// one that it contains.
+static bool place_is_in(const ruga_model* model, const ruga_cut_piece* piece, int place, int h, const bool* in) {
+    const ruga_cut* cut = &model->creases->cut;
+    int i = place / 2;
+    if (place % 2 == 0) {
+        return in[cut->source[piece->node[i]]];
     }
-    if (!creases) {
-        hold_node(model, v, h);
+    const double* x = cut->material.position + 3 * (size_t)ruga_cut_vertex(cut, piece, place);
+    return (in[cut->source[piece->node[i]]] && in[cut->source[piece->node[(i + 1) % 3]]]) ||
+           ruga_region_contains_within(&model->handles[h].region, x, ruga_region_slack(model->sheet));
+}
+
+// A copy of a selected vertex is held where its piece has a vertex in the region itself; a piece that lies in the region
+// as a whole is held as a whole. So a crease across the rim of a region is held from both sides, and one that bounds a
+// region can turn.
+static void hold_pieces(ruga_model* model, int h, const bool* in) {
+    const ruga_cut* cut = &model->creases->cut;
+    for (int p = 0; p < cut->piece_count; p++) {
+        const ruga_cut_piece* piece = &cut->piece[p];
+        bool any = false, all = true;
+        for (int k = 0; k < piece->polygon.count; k++) {
+            bool inside = place_is_in(model, piece, piece->polygon.place[k], h, in);
+            any = any || (inside && piece->polygon.place[k] % 2 == 0);
+            all = all && inside;
+        }
+        for (int i = 0; i < 3; i++) {
+            if (all || (any && in[cut->source[piece->node[i]]])) {
+                hold_node(model, piece->node[i], h);
+            }
+        }
     }
+}
+
+static void hold_selected(ruga_model* model, int h, int count, const int* selected, bool* in) {
+    if (!model->creases) {
+        for (int k = 0; k < count; k++) {
+            hold_node(model, selected[k], h);
+        }
+        return;
+    }
+    memset(in, 0, (size_t)model->sheet->vertex_count * sizeof *in);
+    for (int k = 0; k < count; k++) {
+        in[selected[k]] = true;
+    }
+    hold_pieces(model, h, in);
 }
 
 // The uncut triangle nearest to the middle; any where all are cut.
@@ -269,9 +306,11 @@ static void hold_in_space(ruga_model* model) {
 static ruga_status build_skin_holds(ruga_model* model) {
     ruga_status status = RUGA_OK;
     int nodes = model->mesh.vertex_count, *selected = NULL;
+    bool* in = NULL;
     RUGA_TRY(RUGA_NEW(model->skin_handle, 3 * (size_t)nodes));
     memset(model->skin_handle, -1, 3 * (size_t)nodes * sizeof *model->skin_handle);
-    RUGA_TRY(RUGA_NEW(selected, model->sheet->vertex_count));
+    RUGA_TRY_DONE(RUGA_NEW(selected, model->sheet->vertex_count));
+    RUGA_TRY_DONE(RUGA_NEW(in, model->sheet->vertex_count));
     for (int h = 0; h < model->handle_count; h++) {
         const ruga_handle_def* handle = &model->handles[h];
         int count;
@@ -284,15 +323,14 @@ static ruga_status build_skin_holds(ruga_model* model) {
             status = ruga_fail(RUGA_BAD_INPUT, "handles.%d: the region selects no vertex of the skin", h);
             goto done;
         }
-        for (int k = 0; k < count; k++) {
-            hold_vertex(model, selected[k], h);
-        }
+        hold_selected(model, h, count, selected, in);
     }
     if (model->creases && !model->has_interior && !model->any_skin_held && model->skin.motion != RUGA_SKIN_DYNAMIC) {
         hold_in_space(model);
     }
 done:
     ruga_release(selected);
+    ruga_release(in);
     return status;
 }
 
