@@ -153,7 +153,7 @@ static ruga_status write_design(const ruga_arguments* arguments, int design) {
         pattern.face_count = pattern.corner_count = 0;
     }
     const ruga_fold_frame frame = {(const double*)pattern.position, def.fold > 0 ? angle : NULL, 0};
-    RUGA_TRY_DONE(ruga_fold_write(path, &pattern, true, 1, &frame));
+    RUGA_TRY_DONE(ruga_fold_write(path, &pattern, "m", true, 1, &frame));
     ruga_say(arguments, "%s: %d vertices, %d lines, %d faces\n", path, pattern.vertex_count,
              pattern.edge_count, faces);
 done:

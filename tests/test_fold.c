@@ -286,7 +286,7 @@ static void what_is_written_reads_back_to_the_bit(void** state) {
         angle[e] = e < 8 ? NAN : 0.1 * e - 1;
     }
     const ruga_fold_frame frame[2] = {{flat, NULL, 0}, {bent, angle, 0.25}};
-    assert_ok(ruga_fold_write(FILE_NAME, &p, true, 2, frame));
+    assert_ok(ruga_fold_write(FILE_NAME, &p, "m", true, 2, frame));
     assert_ok(ruga_fold_read(FILE_NAME, 0, 1, &q));
     assert_false(q.folded);
     assert_int_equal(q.note_count, 0);
