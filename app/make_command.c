@@ -29,7 +29,7 @@ static const ruga_option options[] = {
      "miura, waterbomb: cells along X and Y [8,8]; pleats: creases, waves [3,2];\n"
      "arcs: creases, 1 [5,1]",
      false},
-    {"--pattern", NULL, "NAME", "equilateral, diagonal or alternating triangles [equilateral]", false},
+    {"--pattern", NULL, patterns, "how the triangles lie [equilateral]", false},
     {"--angle", NULL, "ANGLE",
      "miura: between the sides of a panel [60 deg]; pleats: steepest slope [30 deg]", false},
     {"--fold", NULL, "ANGLE",

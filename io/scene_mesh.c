@@ -183,8 +183,13 @@ static ruga_status remesh(const ruga_yaml_node* node, double edge, ruga_scene* s
     }
     ruga_mesh fresh = {0};
     ruga_status status = ruga_mesh_remesh(&scene->mesh, edge, &fresh);
+    ruga_scene_parts* parts = scene->storage;
     if (status == RUGA_OK) {
-        ruga_mesh_clear(&scene->mesh);
+        if (parts->follow.file) {
+            parts->before_remesh = scene->mesh;
+        } else {
+            ruga_mesh_clear(&scene->mesh);
+        }
         scene->mesh = fresh;
     }
     return ruga_yaml_fail_at(status, ruga_yaml_find(node, "remesh"), "mesh.remesh");
@@ -321,6 +326,7 @@ ruga_status ruga_scene_load_mesh(const ruga_yaml_node* root, const char* directo
                    source->file ? source->file : ruga_shape_name(source->make.shape));
     RUGA_TRY(ruga_pool_copy(&parts->pool, name, strlen(name), &scene->mesh_name));
     RUGA_TRY(read_source(node, source, directory, &parts->pool, &scene->mesh));
+    parts->file_vertices = scene->mesh.vertex_count;
     RUGA_TRY(take_groups(node, &source->groups, &scene->mesh));
     int dropped;
     RUGA_TRY(drop_unused_vertices(&scene->mesh, &dropped));

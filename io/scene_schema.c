@@ -19,6 +19,7 @@
 #define SOURCE(field)   IN(ruga_scene_source, field)
 #define HANDLE(field)   IN(ruga_handle_def, field)
 #define KEYFRAME(field) IN(ruga_keyframe_def, field)
+#define FOLLOW(field)   IN(ruga_scene_follow, field)
 #define VARY(field)     IN(ruga_scene_vary, field)
 #define CREASE(field)   IN(ruga_scene_crease, field)
 
@@ -93,7 +94,7 @@ const ruga_key ruga_keys[] = {
     CHOICE("skin.model", MODEL(skin.model), "shell", "shell|springs|volume",
            "shell: a thin shell. volume: thin stiff elements of a volume that is fine throughout, `lattice.cells` "
            "along its longest side and graded in depth; a flat rectangular sheet in a plane of z with `fill: box` and "
-           "prescribed stretches only. `coupling` says nothing then. springs: not available yet."),
+           "prescribed stretches only. `coupling` says nothing then. springs: cloth of linear, bending and axial-bending springs with the stiffness of the shell but Poisson's ratio 1/3, in dynamic motion."),
     NUMBER("skin.thickness", MODEL(skin.thickness), "m", "2 mm", POSITIVE, "Thickness h."),
     NUMBER("skin.young", MODEL(skin.young), "Pa", "40 MPa", POSITIVE, "Young's modulus."),
     NUMBER("skin.poisson", MODEL(skin.poisson), "1", "0.3", POISSON, "Poisson's ratio."),
@@ -110,9 +111,14 @@ const ruga_key ruga_keys[] = {
     CHOICE(
         "skin.motion", MODEL(skin.motion), "static", "static|damped|dynamic",
         "static: the skin is in equilibrium at each frame. damped: drawn towards the skin that the interior "
-        "carries along, over the time `relaxation`. dynamic: needs `interior: none`; not available yet."),
+        "carries along, over the time `relaxation`. dynamic: with mass, in time; needs `interior: none`."),
     NUMBER("skin.relaxation", MODEL(skin.relaxation), "s", "20 ms", POSITIVE,
            "Relaxation time of damped motion."),
+    NUMBER("skin.damping", MODEL(skin.damping), "s", "0 s", NOT_NEGATIVE,
+           "Of dynamic motion: the viscous stress over the elastic stress of the strain rate. A mode of frequency w "
+           "loses the part w damping / 2 of critical damping."),
+    NUMBER("skin.drag", MODEL(skin.drag), "1/s", "0 1/s", NOT_NEGATIVE,
+           "Of dynamic motion: the force over the momentum with which the air around holds every part back."),
     ENTRIES("skin.vary", "(none)",
             "Where the skin differs from the values above: each entry with a region, or one of gradient, "
             "attribute, texture (in a region, or everywhere), and with one or more of thickness, young, "
@@ -202,10 +208,30 @@ const ruga_key ruga_keys[] = {
     NUMBERS("prescribed.N.bump.direction", 3, KEYFRAME(bump_direction), "1", "[0, 0, -1]", ANY,
             "Direction, of any length but 0."),
 
+    SECTION("follow", "(none)",
+            "A moving surface that the interior follows, in place of `prescribed`: the lattice is fitted to each of its "
+            "samples, linear in between, held outside."),
+    OTHER("follow.file", RUGA_KEY_TEXT, FOLLOW(file), "", REQUIRED,
+          "A point cache (.pc2, .mdd) of the mesh's file, or its .obj files, numbered from 0 or 1 by %d or %04d in the "
+          "name; the same vertices in the same order, in the mesh's unit and scale."),
+    NUMBER("follow.rate", FOLLOW(rate), "1/s", "24 1/s", POSITIVE,
+           "Samples per second. Not for .mdd, which has times of its own."),
+    NUMBER("follow.start", FOLLOW(start), "s", "0 s", ANY, "Time of the first sample."),
+    NUMBER("follow.smoothness", FOLLOW(smoothness), "1", "1e-4", POSITIVE,
+           "Weight of the lattice's second differences beside the mean square distance to the surface."),
+
     SECTION("time", "{}", "Frame k is at k times the step."),
     NUMBER("time.step", MODEL(step), "s", "20 ms", POSITIVE, "Time from frame to frame."),
     INTEGERS("time.frames", 1, MODEL(frames), "50", 1, 1000000,
              "Number of frames after frame 0, the start. The only key that may change for a resumed run."),
+    SECTION("start", "{}", "How a skin in dynamic motion begins."),
+    NUMBER("start.fold", MODEL(start.fold), "1", "0", ANY,
+           "The flat panels between straight creases are turned by this part of the creases' rest angles at time 0. "
+           "Refused where panels would have to bend."),
+    NUMBER("start.cone", MODEL(start.cone), "rad", "0 rad", NOT_NEGATIVE,
+           "Then a sector of the plane z = 0 about the origin that has this angle is rolled into a whole cone, its "
+           "tip at the origin and its axis along -z."),
+    NUMBERS("start.velocity", 3, MODEL(start.velocity), "m/s", "[0, 0, 0]", ANY, "Velocity of what is not held."),
     NUMBERS("gravity", 3, MODEL(gravity), "m/s^2", "[0, 0, 0]", ANY, "Acceleration on skin and interior."),
 
     ENTRIES("handles", "(none)",

@@ -13,6 +13,7 @@
 #include "mesh/mesh.h"
 #include "solver/creases.h"
 #include "solver/dense.h"
+#include "solver/follow.h"
 #include "ruga/ruga.h"
 
 enum { RUGA_MODEL_COOKIE = 0x52756761 };
@@ -45,8 +46,10 @@ struct ruga_model {
     double step;
     int frames;
     double gravity[3];
+    ruga_start_def start;
     int keyframe_count;
     ruga_keyframe_def* keyframes;
+    ruga_follow follow; // count 0 where the interior follows no surface
     int handle_count;
     ruga_handle_def* handles; // with copies of names and vertex lists
     ruga_loads* loads;

@@ -6,6 +6,7 @@
 #define RUGA_SOLVER_STATE_H
 
 #include "solver/interior.h"
+#include "solver/moving.h"
 #include "solver/skin.h"
 
 struct ruga_state {
@@ -21,6 +22,7 @@ struct ruga_state {
     ruga_skin* skin;
     ruga_interior* interior;                        // NULL where prescribed or absent
     ruga_volume_solver* volume; // of the dense volume; NULL for a shell
+    ruga_moving* moving;        // of a free skin in dynamic motion, NULL otherwise
     double* deviation;          // [N of the volume][3] m: displacement less that of the prescribed stretch
     double* displacement;       // [N of the volume][3] work
     double *old_q, *old_x, *next_embedded, *anchor; // work

@@ -81,6 +81,10 @@ static ruga_status create_state(const ruga_model* model, ruga_state** out) {
                                                 &state->volume));
     }
     set_start(state);
+    if (model->skin.motion == RUGA_SKIN_DYNAMIC) {
+        RUGA_TRY_DONE(ruga_moving_create(model, state->skin, &state->moving));
+        RUGA_TRY_DONE(ruga_moving_start(state->moving, state->x));
+    }
 done:
     if (status != RUGA_OK) {
         ruga_state_destroy(&state);
@@ -95,6 +99,7 @@ void ruga_state_destroy(ruga_state** state_pointer) {
         return;
     }
     ruga_interior_destroy(&state->interior);
+    ruga_moving_destroy(&state->moving);
     ruga_skin_destroy(&state->skin);
     ruga_volume_solver_destroy(&state->volume);
     void* const owned[] = {state->x,     state->embedded,      state->q,      state->v,     state->old_q,
@@ -149,7 +154,7 @@ enum { RESTART_SCALARS = 5 }; // frame, time, shift memory, proximal factor, whe
 
 int ruga_state_restart_size(const ruga_model* model) {
     return RESTART_SCALARS + 3 * model->mesh.vertex_count + 6 * model->lattice.node_count +
-           3 * model->dense.volume.node_count + ruga_hinges_restart_size(model->creases);
+           3 * model->dense.volume.node_count + ruga_hinges_restart_size(model->creases) + ruga_moving_restart_size(model);
 }
 
 void ruga_state_save(const ruga_state* state, double* restart) {
@@ -168,6 +173,10 @@ void ruga_state_save(const ruga_state* state, double* restart) {
     if (state->skin->hinges) {
         ruga_hinges_save(state->skin->hinges,
                          restart + n + 2 * nodes + 3 * (size_t)state->model->dense.volume.node_count);
+    }
+    if (state->moving) { // last of all
+        int size = ruga_state_restart_size(state->model) - RESTART_SCALARS;
+        ruga_moving_save(state->moving, restart + size - ruga_moving_restart_size(state->model));
     }
 }
 
@@ -188,6 +197,10 @@ ruga_status ruga_state_load(ruga_state* state, const double* restart) {
     if (state->skin->hinges) {
         ruga_hinges_load(state->skin->hinges,
                          restart + n + 2 * nodes + 3 * (size_t)model->dense.volume.node_count);
+    }
+    if (state->moving) {
+        int size = ruga_state_restart_size(model) - RESTART_SCALARS;
+        ruga_moving_load(state->moving, restart + size - ruga_moving_restart_size(model));
     }
     if (model->has_interior) {
         ruga_lattice_embed(&model->lattice, state->q, state->embedded);
@@ -384,6 +397,10 @@ static void finish_report(ruga_state* state, double begin, ruga_report* out) {
 
 static void pose_at(const ruga_state* state, double time, double* q) {
     const ruga_model* model = state->model;
+    if (model->follow.count > 0) {
+        ruga_follow_at(&model->follow, time, q);
+        return;
+    }
     ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, time, q);
 }
 
@@ -609,7 +626,9 @@ ruga_status ruga_state_step(const ruga_model* model, ruga_state* state, ruga_rep
     *out = (ruga_report){0};
     double begin = ruga_clock();
     state->skin->work = (ruga_skin_work){0};
-    if (!model->has_interior) {
+    if (state->moving) {
+        RUGA_TRY(ruga_moving_step(state->moving, state->time, state->x, out));
+    } else if (!model->has_interior) {
         RUGA_TRY(step_shell(state, out));
     } else if (ruga_model_is_prescribed(model)) {
         RUGA_TRY(step_prescribed(state, out));
@@ -621,7 +640,7 @@ ruga_status ruga_state_step(const ruga_model* model, ruga_state* state, ruga_rep
     state->skin->time = state->time;
     show(state);
     finish_report(state, begin, out);
-    out->energy_kinetic = kinetic_energy(state);
+    out->energy_kinetic = state->moving ? out->energy_kinetic : kinetic_energy(state);
     return RUGA_OK;
 }
 
@@ -629,6 +648,10 @@ ruga_status ruga_state_measure(ruga_state* state, ruga_report* report) {
     ruga_skin_result result = {.outcome = state->start.outcome};
     double *gradient = ruga_skin_vector(state->skin, 0), *projected = ruga_skin_vector(state->skin, 1);
     *report = state->start;
+    if (state->moving) {
+        ruga_moving_measure(state->moving, state->time, state->x, report);
+        return RUGA_OK;
+    }
     if (state->volume) {
         return RUGA_OK;
     }

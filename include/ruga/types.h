@@ -84,9 +84,20 @@ typedef struct ruga_keyframe_def {
     double bump_direction[3]; // need not be of unit length
 } ruga_keyframe_def;
 
+// A moving surface that the interior follows in place of keyframes. The samples are asked for in order while a model is
+// created; another status than RUGA_OK ends that.
+typedef ruga_status ruga_sample_function(int sample, double* positions, void* context);
+typedef struct ruga_motion_def {
+    int sample_count;           // 0 = none
+    const double* times;        // [sample_count] s, ascending: linear in between, held outside
+    ruga_sample_function* read; // positions [vertex_count][3] m of the mesh's vertices
+    void* context;
+    double smoothness; // > 0: weight of the lattice's second differences beside the distance to the surface
+} ruga_motion_def;
+
 typedef enum ruga_membrane { RUGA_MEMBRANE_BARAFF_WITKIN, RUGA_MEMBRANE_STVK } ruga_membrane;
 typedef enum ruga_bending { RUGA_BENDING_HINGE, RUGA_BENDING_KIRCHHOFF_LOVE } ruga_bending;
-// RUGA_SKIN_DYNAMIC, for a free shell, is not there yet.
+// RUGA_SKIN_DYNAMIC is for a free shell.
 typedef enum ruga_skin_motion { RUGA_SKIN_STATIC, RUGA_SKIN_DAMPED, RUGA_SKIN_DYNAMIC } ruga_skin_motion;
 typedef enum ruga_interior_motion {
     RUGA_INTERIOR_DYNAMIC,
@@ -109,7 +120,7 @@ typedef enum ruga_method {
 typedef enum ruga_linear_kind { RUGA_LINEAR_DIRECT, RUGA_LINEAR_MINRES } ruga_linear_kind;
 
 // RUGA_SKIN_VOLUME: no shell, but thin stiff elements of a volume that is fine throughout, on top of a box; the
-// interior must be prescribed by stretches along the axes. RUGA_SKIN_SPRINGS is not there yet.
+// interior must be prescribed by stretches along the axes. RUGA_SKIN_SPRINGS: cloth of springs, in dynamic motion.
 typedef enum ruga_skin_model { RUGA_SKIN_SHELL, RUGA_SKIN_SPRINGS, RUGA_SKIN_VOLUME } ruga_skin_model;
 
 typedef struct ruga_skin_def {
@@ -123,6 +134,8 @@ typedef struct ruga_skin_def {
     double growth[2]; // rest lengths along and across the skin's first direction are multiplied by these
     ruga_skin_motion motion;
     double relaxation; // s, for damped motion
+    double damping;    // s, >= 0, for dynamic motion: viscous stress over the elastic stress of the strain rate
+    double drag;       // 1/s, >= 0, for dynamic motion: M drag v
     // A skin that varies: values at the mesh's vertices, linear between them, in place of those above; NULL =
     // as above.
     int vertex_count;               // of each array given: the mesh's
@@ -214,6 +227,13 @@ typedef struct ruga_crease_def {
     double hardening;              // >= 0: growth of the yield angle for each rad of plastic turning
 } ruga_crease_def;
 
+// How a skin in dynamic motion begins: folded flat panels, then rolled, with a velocity where nothing holds it.
+typedef struct ruga_start_def {
+    double fold;        // part of the creases' rest angles at time 0 by which panels are turned; 0 = as the mesh is
+    double cone;        // rad: a sector of the plane z = 0 about the origin, of this angle, closes to a cone; 0 = none
+    double velocity[3]; // m/s
+} ruga_start_def;
+
 typedef struct ruga_model_def {
     ruga_mesh_def mesh;
     ruga_skin_def skin;
@@ -223,6 +243,7 @@ typedef struct ruga_model_def {
     ruga_coupling_def coupling;
     int keyframe_count;
     const ruga_keyframe_def* keyframes;
+    ruga_motion_def follow;
     double step; // s, > 0
     int frames;  // >= 1
     double gravity[3];
@@ -230,6 +251,7 @@ typedef struct ruga_model_def {
     const ruga_handle_def* handles;
     int crease_count;
     const ruga_crease_def* creases;
+    ruga_start_def start;
     ruga_solver_def solver;
     uint32_t cookie; // set by ruga_default_model_def
 } ruga_model_def;
