@@ -81,23 +81,9 @@ typedef struct bench {
 // ---- the scene -----------------------------------------------------------------------------------------
 
 static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def keys[3], const options* o) {
-    int frames = o->frames;
     bench_pillow_def(mesh, def);
+    bench_pillow_motion(def, WARM, o->frames, keys);
     def->skin.relaxation = o->relaxation;
-    for (int k = 0; k < 3; k++) {
-        keys[k] = ruga_default_keyframe_def();
-        keys[k].has_bump = true;
-        keys[k].bump_center[2] = 0.08;
-        keys[k].bump_radius = 0.06;
-    }
-    keys[1].time = WARM * def->step;
-    keys[1].matrix[0] = 0.99;
-    keys[2].time = (WARM + frames) * def->step;
-    keys[2].matrix[0] = 0.99 - 0.002 * frames;
-    keys[2].bump_depth = 1e-3 * frames;
-    def->keyframes = keys;
-    def->keyframe_count = 3;
-    def->frames = WARM + frames;
 }
 
 // ---- memory of the process -----------------------------------------------------------------------------
