@@ -35,7 +35,7 @@ enum {
     WARM = 5,
     MAX_FRAMES = 20,
     KINDS = 4,
-    MINRES_MAX = 1000,
+    MINRES_MAX = 400,
     LANCZOS_MAX = 100,
     PLACES = 6,
     PLACE_MAX = PLACES * MAX_FRAMES
@@ -167,12 +167,13 @@ static ruga_status run_all(bench* b, int where, int frame) {
 
 // ---- Lanczos -------------------------------------------------------------------------------------------
 
-// Steps until the tridiagonal matrix has a negative pivot; 0 where it never had.
+// Steps until a direction of negative curvature is found, the one that a negative pivot of the tridiagonal
+// matrix belongs to (conjugate gradients without their right-hand side); 0 where none is.
 static ruga_status run_lanczos(bench* b, uint64_t seed, int* steps) {
     ruga_skin* skin = b->skin;
     ruga_random random = {seed};
     int n = skin->n;
-    double *old = b->lanczos, *v = old + n, *r = v + n, *z = r + n, *image = z + n;
+    double *old = b->lanczos, *v = old + n, *r = v + n, *z = r + n, *image = z + n, *direction = image + n;
     double beta = 0, pivot = 1;
     *steps = 0;
     for (int i = 0; i < n; i++) {
@@ -195,9 +196,15 @@ static ruga_status run_lanczos(bench* b, uint64_t seed, int* steps) {
         ruga_skin_multiply(skin, z, image);
         RUGA_TRY(ruga_skin_project(skin, image, image));
         alpha = ruga_dot_product(n, z, image);
+        for (int i = 0; i < n; i++) {
+            direction[i] = z[i] - (k > 1 ? beta / pivot : 0) * direction[i];
+        }
         pivot = alpha - beta * beta / pivot;
         if (pivot < 0) {
-            *steps = k;
+            // Where orthogonality is lost the matrix has eigenvalues of its own: the direction itself is
+            // asked.
+            ruga_skin_multiply(skin, direction, image);
+            *steps = ruga_dot_product(n, direction, image) < 0 ? k : 0;
             return RUGA_OK;
         }
         for (int i = 0; i < n; i++) {
@@ -250,7 +257,7 @@ static ruga_status create(bench* b, int unknowns, int clusters) {
     for (size_t k = 0; k < sizeof vectors / sizeof vectors[0]; k++) {
         RUGA_TRY(RUGA_NEW_ZERO(*vectors[k], size));
     }
-    RUGA_TRY(RUGA_NEW_ZERO(b->lanczos, 5 * n));
+    RUGA_TRY(RUGA_NEW_ZERO(b->lanczos, 6 * n));
     const ruga_sparse* pattern = ruga_shell_pattern(b->skin->shell);
     b->clamped = *pattern;
     b->clamped.value = NULL;
