@@ -51,8 +51,8 @@ static const variant variants[METHODS] = {
     {"paper", RUGA_METHOD_PAPER, RUGA_LINEAR_DIRECT, RUGA_SKIN_STATIC, true, 30000},
 };
 
-typedef struct options {
-    int frames, slow_frames, threads[2] /* frames 0: by size */, thread_count, case_count;
+typedef struct options { // frames 0: by size
+    int frames, slow_frames, threads[2], thread_count, case_count;
     int unknowns[MAX_CASES], clusters[MAX_CASES];
     const char *methods, *plot;
     double relaxation; // of damped motion
@@ -86,7 +86,7 @@ typedef struct bench {
     ruga_state* state;
     ruga_skin_trace* trace;
     double *old_deviation, *relaxed, marks[MAX_FRAMES], setup;
-    size_t bytes_before; // in use by the process when the first solve begins
+    size_t bytes_before; // in use by the process before the model is made
 } bench;
 
 // ---- the scene -----------------------------------------------------------------------------------------
@@ -384,7 +384,7 @@ static void report(bench* b, const run* runs, int count, options* o) {
     size_t peak = process_bytes("VmHWM:");
     double ratio = peak > b->bytes_before ? (double)(peak - b->bytes_before) / factor : 0;
     printf("\n%d unknowns, %d clusters, %d elements; setup %.2f s; factor %.1f MB, peak %.2f factors "
-           "above what was in use before the first solve\n",
+           "above the start, model and all\n",
            3 * b->mesh.vertex_count, b->model->clusters.count, b->model->lattice.element_count, b->setup,
            factor / 1e6, ratio);
     printf("%-13s %s %8s %8s %8s | %6s %6s | %6s %6s | %s | %5s %5s %5s %4s %4s %7s | %8s %5s %5s %5s %5s\n",
@@ -465,6 +465,8 @@ static ruga_status create(bench* b, int unknowns, int clusters, const options* o
     RUGA_TRY(bench_pillow_mesh(unknowns, &b->mesh));
     fill(&def, &b->mesh, keys, o);
     def.coupling.count = clusters;
+    reset_peak();
+    b->bytes_before = process_bytes("VmRSS:");
     b->setup = ruga_clock();
     RUGA_TRY(ruga_model_create(&def, &b->model));
     RUGA_TRY(ruga_state_create(b->model, &b->state));
@@ -473,8 +475,6 @@ static ruga_status create(bench* b, int unknowns, int clusters, const options* o
     RUGA_TRY(RUGA_NEW(b->relaxed, 3 * b->mesh.vertex_count));
     RUGA_TRY(RUGA_NEW(b->trace, TRACE));
     memset(b->trace, 0, TRACE * sizeof *b->trace);
-    reset_peak();
-    b->bytes_before = process_bytes("VmRSS:");
     b->state->skin->trace = b->trace;
     b->state->skin->trace_size = TRACE;
     return RUGA_OK;
