@@ -59,6 +59,15 @@ void ruga_handle_target(const ruga_handle_def* handle, double time, const double
 typedef struct ruga_loads ruga_loads;
 ruga_status ruga_loads_create(const ruga_mesh* mesh, const ruga_connectivity* connectivity, int handle_count,
                               const ruga_handle_def* handles, ruga_loads** loads);
+// The same where the mesh is what a cut one shows (crease/cut.h): corner i of triangle f is at sum over k of weight[k]
+// x[node[k]], place [F][3]. One that is a node itself has it twice, with weights 1 and 0.
+typedef struct ruga_load_place {
+    int node[2];
+    double weight[2];
+} ruga_load_place;
+ruga_status ruga_loads_create_placed(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                     const ruga_load_place (*place)[3], int handle_count,
+                                     const ruga_handle_def* handles, ruga_loads** loads);
 void ruga_loads_destroy(ruga_loads** loads);
 // Potential energy in J is SET (the pressure's is p times the volume swept by the region's triangles from
 // rest; dead loads' is -f.(x - rest)); its gradient (minus force) is ADDED where not NULL, and the pressure's

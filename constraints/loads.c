@@ -51,8 +51,10 @@ typedef struct load {
     ruga_handle_def handle; // for its kind, pressure and ramp; its pointers are not used
     int triangle_count;
     int (*triangle)[3]; // under pressure
+    ruga_load_place (*corner)[3]; // where its corners are; NULL = at vertices
     int vertex_count;
-    int* vertex;        // under a dead load
+    int* vertex;            // under a dead load
+    ruga_load_place* place; // where they are; NULL = at themselves
     double (*force)[3]; // [vertex_count] N at full ramp
 } load;
 
@@ -69,6 +71,8 @@ void ruga_loads_destroy(ruga_loads** loads) {
     }
     for (int i = 0; i < (*loads)->count; i++) {
         ruga_release((*loads)->load[i].triangle);
+        ruga_release((*loads)->load[i].corner);
+        ruga_release((*loads)->load[i].place);
         ruga_release((*loads)->load[i].vertex);
         ruga_release((*loads)->load[i].force);
     }
@@ -87,6 +91,7 @@ static bool is_load(const ruga_handle_def* handle) {
 typedef struct selection {
     const ruga_mesh* mesh;
     const ruga_connectivity* connectivity;
+    const ruga_load_place (*place)[3]; // [F] or NULL
     int index; // of the handle, for sentences
     int count;
     int* list;     // [V]
@@ -101,16 +106,38 @@ static ruga_status add_pressure(const selection* s, load* out) {
         RUGA_TRY(ruga_region_group(region, s->mesh, &group));
     }
     RUGA_TRY(RUGA_NEW(out->triangle, s->mesh->triangle_count));
+    if (s->place) {
+        RUGA_TRY(RUGA_NEW(out->corner, s->mesh->triangle_count));
+    }
     for (int t = 0; t < s->mesh->triangle_count; t++) {
         const int* corner = s->mesh->triangle + 3 * (size_t)t;
         bool pressed = group >= 0 ? s->mesh->face_group[t] == group
                                   : s->in[corner[0]] && s->in[corner[1]] && s->in[corner[2]];
+        if (pressed && s->place) {
+            memcpy(out->corner[out->triangle_count], s->place[t], sizeof *out->corner);
+        }
         if (pressed) {
             memcpy(out->triangle[out->triangle_count++], corner, sizeof *out->triangle);
         }
     }
     return out->triangle_count ? RUGA_OK
                                : ruga_region_empty(region, s->mesh, s->index, "whole face to press");
+}
+
+// Any corner at a vertex tells where it is.
+static ruga_status place_vertices(const selection* s, load* out) {
+    int* corner = NULL;
+    RUGA_TRY(RUGA_NEW(out->place, out->vertex_count));
+    RUGA_TRY(RUGA_NEW(corner, s->mesh->vertex_count));
+    for (int k = 3 * s->mesh->triangle_count - 1; k >= 0; k--) {
+        corner[s->mesh->triangle[k]] = k;
+    }
+    for (int k = 0; k < out->vertex_count; k++) {
+        int at = corner[out->vertex[k]];
+        out->place[k] = s->place[at / 3][at % 3];
+    }
+    ruga_release(corner);
+    return RUGA_OK;
 }
 
 // Dead load on the selected vertices: `scale` times share[v] times the handle's force.
@@ -124,7 +151,7 @@ static ruga_status add_dead_load(const selection* s, double scale, load* out) {
             out->vertex[out->vertex_count++] = v;
         }
     }
-    return RUGA_OK;
+    return s->place ? place_vertices(s, out) : RUGA_OK;
 }
 
 static ruga_status add_total_force(const selection* s, load* out) {
@@ -178,10 +205,11 @@ static ruga_status add_load(selection* s, load* out) {
     }
 }
 
-static ruga_status fill(const ruga_mesh* mesh, const ruga_connectivity* connectivity, int handle_count,
-                        const ruga_handle_def* handles, ruga_loads* loads) {
+static ruga_status fill(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                        const ruga_load_place (*place)[3], int handle_count, const ruga_handle_def* handles,
+                        ruga_loads* loads) {
     ruga_status status = RUGA_OK;
-    selection s = {.mesh = mesh, .connectivity = connectivity};
+    selection s = {.mesh = mesh, .connectivity = connectivity, .place = place};
     RUGA_TRY_DONE(RUGA_NEW(s.list, mesh->vertex_count));
     RUGA_TRY_DONE(RUGA_NEW(s.in, mesh->vertex_count));
     RUGA_TRY_DONE(RUGA_NEW(s.share, mesh->vertex_count));
@@ -206,12 +234,29 @@ done:
 
 ruga_status ruga_loads_create(const ruga_mesh* mesh, const ruga_connectivity* connectivity, int handle_count,
                               const ruga_handle_def* handles, ruga_loads** loads) {
+    return ruga_loads_create_placed(mesh, connectivity, NULL, handle_count, handles, loads);
+}
+
+ruga_status ruga_loads_create_placed(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                     const ruga_load_place (*place)[3], int handle_count,
+                                     const ruga_handle_def* handles, ruga_loads** loads) {
     RUGA_TRY(RUGA_NEW_ZERO(*loads, 1));
-    ruga_status status = fill(mesh, connectivity, handle_count, handles, *loads);
+    ruga_status status = fill(mesh, connectivity, place, handle_count, handles, *loads);
     if (status != RUGA_OK) {
         ruga_loads_destroy(loads);
     }
     return status;
+}
+
+static void position_of(const ruga_load_place* place, const double* x, double at[3]) {
+    memset(at, 0, 3 * sizeof *at);
+    ruga_add_scaled(place->weight[0], x + 3 * (size_t)place->node[0], at);
+    ruga_add_scaled(place->weight[1], x + 3 * (size_t)place->node[1], at);
+}
+
+static void add_at(const ruga_load_place* place, double scale, const double force[3], double* gradient) {
+    ruga_add_scaled(scale * place->weight[0], force, gradient + 3 * (size_t)place->node[0]);
+    ruga_add_scaled(scale * place->weight[1], force, gradient + 3 * (size_t)place->node[1]);
 }
 
 // Quantities of the formula at the file's head; y = (c + 2 d) / 12, z = (a + 2 b) / 12.
@@ -219,9 +264,15 @@ typedef struct sweep {
     double u[3], a[3], b[3], c[3], d[3], y[3], z[3];
 } sweep;
 
-static sweep sweep_of(const ruga_loads* loads, const double* x, const int triangle[3]) {
-    const double *x0 = x + 3 * (size_t)triangle[0], *x1 = x + 3 * (size_t)triangle[1],
-                 *x2 = x + 3 * (size_t)triangle[2];
+static sweep sweep_of(const ruga_loads* loads, const load* l, int t, const double* x) {
+    const int* triangle = l->triangle[t];
+    double at[3][3];
+    for (int i = 0; i < 3 && l->corner; i++) {
+        position_of(&l->corner[t][i], x, at[i]);
+    }
+    const double *x0 = l->corner ? at[0] : x + 3 * (size_t)triangle[0],
+                 *x1 = l->corner ? at[1] : x + 3 * (size_t)triangle[1],
+                 *x2 = l->corner ? at[2] : x + 3 * (size_t)triangle[2];
     const double *r0 = loads->rest + 3 * (size_t)triangle[0], *r1 = loads->rest + 3 * (size_t)triangle[1],
                  *r2 = loads->rest + 3 * (size_t)triangle[2];
     sweep s;
@@ -301,6 +352,37 @@ static void add_hessian(const sweep* s, double pressure, const int triangle[3], 
     }
 }
 
+// One block, between the nodes a and b, of weight w; both orders where they are one node.
+static void add_block(int a, int b, double w, double block[3][3], const ruga_sparse* pattern, double* hessian) {
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 3; column++) {
+            int i = 3 * a + row, j = 3 * b + column;
+            double value = w * (a == b ? block[row][column] + block[column][row] : block[row][column]);
+            if (a == b && i < j) {
+                continue;
+            }
+            int place = ruga_sparse_find(pattern, i > j ? i : j, i > j ? j : i);
+            RUGA_ASSERT(place >= 0);
+            hessian[place] += value;
+        }
+    }
+}
+
+static void add_placed_hessian(const sweep* s, double pressure, const ruga_load_place corner[3],
+                               const ruga_sparse* pattern, double* hessian) {
+    for (int i = 0; i < 3; i++) {
+        const ruga_load_place *p = &corner[i], *q = &corner[(i + 1) % 3];
+        double block[3][3];
+        swept_hessian(s, i, (i + 1) % 3, block);
+        for (int k = 0; k < 4; k++) {
+            double w = pressure * p->weight[k / 2] * q->weight[k % 2];
+            if (w != 0) {
+                add_block(p->node[k / 2], q->node[k % 2], w, block, pattern, hessian);
+            }
+        }
+    }
+}
+
 typedef struct totals {
     double energy, force_square;
 } totals;
@@ -311,16 +393,20 @@ static totals press(const ruga_loads* loads, const load* l, const double* x, dou
     double pressure = ramp * l->handle.pressure;
     for (int t = 0; t < l->triangle_count; t++) {
         const int* triangle = l->triangle[t];
-        sweep s = sweep_of(loads, x, triangle);
+        sweep s = sweep_of(loads, l, t, x);
         double slope[3][3];
         sum.energy += pressure * swept_volume(&s, slope);
         for (int k = 0; k < 3; k++) {
             sum.force_square += pressure * pressure * ruga_dot(slope[k], slope[k]);
-            if (gradient) {
+            if (gradient && l->corner) {
+                add_at(&l->corner[t][k], pressure, slope[k], gradient);
+            } else if (gradient) {
                 ruga_add_scaled(pressure, slope[k], gradient + 3 * (size_t)triangle[k]);
             }
         }
-        if (hessian) {
+        if (hessian && l->corner) {
+            add_placed_hessian(&s, pressure, l->corner[t], pattern, hessian);
+        } else if (hessian) {
             add_hessian(&s, pressure, triangle, pattern, hessian);
         }
     }
@@ -331,11 +417,16 @@ static totals pull(const ruga_loads* loads, const load* l, const double* x, doub
     totals sum = {0, 0};
     for (int k = 0; k < l->vertex_count; k++) {
         size_t v = 3 * (size_t)l->vertex[k];
-        double moved[3];
-        ruga_subtract(x + v, loads->rest + v, moved);
+        double moved[3], at[3];
+        if (l->place) {
+            position_of(&l->place[k], x, at);
+        }
+        ruga_subtract(l->place ? at : x + v, loads->rest + v, moved);
         sum.energy -= ramp * ruga_dot(l->force[k], moved);
         sum.force_square += ramp * ramp * ruga_dot(l->force[k], l->force[k]);
-        if (gradient) {
+        if (gradient && l->place) {
+            add_at(&l->place[k], -ramp, l->force[k], gradient);
+        } else if (gradient) {
             ruga_add_scaled(-ramp, l->force[k], gradient + v);
         }
     }

@@ -9,18 +9,6 @@
 #include "mesh/connectivity.h"
 #include "mesh/mesh.h"
 
-typedef enum ruga_crease_kind {
-    RUGA_CREASE_FOLD, // cut and sewn together again: the panels turn about the curve
-    RUGA_CREASE_CUT,  // cut and left open
-} ruga_crease_kind;
-
-// How much a crease may do besides folding as one straight hinge; docs/creases.md says what is at stake.
-typedef enum ruga_crease_freedom {
-    RUGA_FREEDOM_AUTO,   // full where the curve is not straight, meets another, is closed, or `varies`
-    RUGA_FREEDOM_SINGLE, // the element of Patkar, Jin and Fedkiw (2015)
-    RUGA_FREEDOM_FULL,   // auxiliary chords: the freedom of a mesh that conforms to the curve
-} ruga_crease_freedom;
-
 typedef struct ruga_curve {
     ruga_crease_kind kind;
     ruga_crease_freedom freedom;

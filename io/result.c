@@ -43,6 +43,7 @@ struct ruga_result {
     hid_t set[RUGA_RESULT_SETS];
     int vertex_count;
     int node_count; // 0 without an interior
+    int segment_count, handle_count;
     int restart_doubles;
     int frame_count;
 };
@@ -165,6 +166,17 @@ static bool put_lattice(hid_t file, const ruga_lattice* lattice) {
            put_reals(file, "/lattice/nodes", lattice->node_count, 3, lattice->rest);
 }
 
+static bool put_creases(hid_t file, const ruga_result_creases* creases) {
+    int count = creases->segment_count;
+    return put_integers(file, "/creases/segments", count, 2, creases->segment) &&
+           put_integers(file, "/creases/segment_crease", count, 1, creases->crease) &&
+           put_column(file, "/creases/length", count, creases->length) &&
+           put_column(file, "/creases/stiffness", count, creases->stiffness) &&
+           ruga_hdf5_put_array(file, "/creases/assignment", H5T_STD_I8LE, H5T_NATIVE_CHAR, 1,
+                               (hsize_t[]){(hsize_t)count}, creases->assignment) &&
+           ruga_hdf5_put_texts(file, "/creases/names", creases->crease_count, creases->name);
+}
+
 // One frame a chunk for positions: they are written once, without reading, and never rewritten.
 static bool make_set(ruga_result* result, int set) {
     static const int64_t no_frame = -1;
@@ -178,6 +190,14 @@ static bool make_set(ruga_result* result, int set) {
     case RUGA_RESULT_EMBEDDED:
     case RUGA_RESULT_LATTICE:
         *made = ruga_hdf5_make(result->file, name, type, 3, (hsize_t[]){0, points, 3}, 1, NULL);
+        break;
+    case RUGA_RESULT_ANGLE:
+    case RUGA_RESULT_REST_ANGLE:
+        *made = ruga_hdf5_make(result->file, name, type, 2, (hsize_t[]){0, (hsize_t)result->segment_count}, 1, NULL);
+        break;
+    case RUGA_RESULT_HANDLE_FORCE:
+        *made = ruga_hdf5_make(result->file, name, type, 3, (hsize_t[]){0, (hsize_t)result->handle_count, 3},
+                               STATS_CHUNK, NULL);
         break;
     case RUGA_RESULT_RESTART:
         *made = ruga_hdf5_make(result->file, name, type, 2, (hsize_t[]){2, (hsize_t)result->restart_doubles},
@@ -214,11 +234,15 @@ static bool fill_file(ruga_result* result, const ruga_result_header* header, con
     result->file = create_file(result->temporary);
     if (result->file < 0 || !put_header(result->file, header) ||
         !put_mesh(result->file, header->mesh, source_vertex) || !put_skin(result->file, header) ||
-        (header->lattice && !put_lattice(result->file, header->lattice))) {
+        (header->lattice && !put_lattice(result->file, header->lattice)) ||
+        (header->creases && !put_creases(result->file, header->creases))) {
         return false;
     }
     for (int set = 0; set < RUGA_RESULT_SETS; set++) {
-        if ((header->lattice || !ruga_result_set_is_interior(set)) && !make_set(result, set)) {
+        bool there = (header->lattice || !ruga_result_set_is_interior(set)) &&
+                     (header->creases || !ruga_result_set_is_crease(set)) &&
+                     (header->handle_count > 0 || set != RUGA_RESULT_HANDLE_FORCE);
+        if (there && !make_set(result, set)) {
             return false;
         }
     }
@@ -239,6 +263,8 @@ static ruga_status start_file(const char* path, const ruga_result_header* header
     made->vertex_count = header->mesh->vertex_count;
     made->node_count = header->lattice ? header->lattice->node_count : 0;
     made->restart_doubles = header->restart_doubles;
+    made->segment_count = header->creases ? header->creases->segment_count : 0;
+    made->handle_count = header->handle_count;
     *result = made;
     RUGA_TRY(make_names(made, path));
     int* identity = NULL;
@@ -308,6 +334,16 @@ static bool put_frame(ruga_result* result, const ruga_result_frame* frame, const
          !ruga_hdf5_put_row(set[RUGA_RESULT_LATTICE], H5T_NATIVE_DOUBLE, row, frame->lattice_position))) {
         return false;
     }
+    if (result->segment_count > 0 &&
+        (!ruga_hdf5_put_row(set[RUGA_RESULT_ANGLE], H5T_NATIVE_DOUBLE, row, frame->crease_angle) ||
+         !ruga_hdf5_put_row(set[RUGA_RESULT_REST_ANGLE], H5T_NATIVE_DOUBLE, row, frame->crease_rest) ||
+         !ruga_hdf5_put_row(set[RUGA_RESULT_GAP], H5T_NATIVE_DOUBLE, row, &frame->gap))) {
+        return false;
+    }
+    if (result->handle_count > 0 &&
+        !ruga_hdf5_put_row(set[RUGA_RESULT_HANDLE_FORCE], H5T_NATIVE_DOUBLE, row, frame->handle_force)) {
+        return false;
+    }
     return ruga_result_put_report(set, row, &frame->report) &&
            H5Fflush(result->file, H5F_SCOPE_GLOBAL) >= 0 &&
            ruga_hdf5_put_row(set[RUGA_RESULT_TIME], H5T_NATIVE_DOUBLE, row, &frame->time) &&
@@ -329,6 +365,8 @@ static ruga_status append(ruga_result* result, const ruga_result_frame* frame, c
 
 ruga_status ruga_result_append(ruga_result* result, const ruga_result_frame* frame) {
     RUGA_ASSERT(frame->position && (result->restart_doubles == 0 || frame->restart));
+    RUGA_ASSERT(result->segment_count == 0 || (frame->crease_angle && frame->crease_rest));
+    RUGA_ASSERT(result->handle_count == 0 || frame->handle_force);
     RUGA_ASSERT(result->node_count == 0 || (frame->embedded && frame->lattice_position));
     if (result->failed) {
         return ruga_fail(RUGA_IO, "%s: frame %d could not be written, so no frame can follow it",
@@ -398,6 +436,16 @@ static ruga_status check_fits(const char* path, const ruga_result_reader* reader
                          "%s: was made from another scene (hash %016" PRIx64 ", now %016" PRIx64 "): %s",
                          path, old->scene_hash, header->scene_hash, advice);
     }
+    if (old->handle_count > 0 && old->handle_count != header->handle_count) {
+        return ruga_fail(RUGA_BAD_INPUT, "%s: it has %d handles, not %d: %s", path, old->handle_count,
+                         header->handle_count, advice);
+    }
+    int segments = header->creases ? header->creases->segment_count : 0;
+    int old_segments = old->creases ? old->creases->segment_count : 0;
+    if (old_segments != segments) {
+        return ruga_fail(RUGA_BAD_INPUT, "%s: its creases have %d segments, not %d: %s", path, old_segments, segments,
+                         advice);
+    }
     if (old->restart_doubles != header->restart_doubles) {
         return ruga_fail(RUGA_BAD_INPUT,
                          "%s: its restart data have %d numbers, not %d: it is of another "
@@ -422,7 +470,7 @@ static ruga_status check_lattice(const char* path, ruga_result_reader* reader,
 }
 
 typedef struct copy_buffers {
-    double *position, *embedded, *lattice, *restart;
+    double *position, *embedded, *lattice, *restart, *angle, *rest, *force;
 } copy_buffers;
 
 // The slot of the frame before the last is copied too where it is whole: then the file is, bit for bit, that
@@ -433,11 +481,20 @@ static ruga_status copy_frames(ruga_result_reader* reader, ruga_result* result, 
     for (int frame = 0; frame < count; frame++) {
         ruga_result_frame copy = {.position = buffers->position,
                                   .embedded = buffers->embedded,
-                                  .lattice_position = buffers->lattice};
+                                  .lattice_position = buffers->lattice,
+                                  .crease_angle = buffers->angle,
+                                  .crease_rest = buffers->rest,
+                                  .handle_force = buffers->force};
         RUGA_TRY(ruga_result_read_frame(reader, frame, &copy.time, buffers->position,
                                         result->node_count > 0 ? buffers->embedded : NULL, &copy.report));
         if (result->node_count > 0) {
             RUGA_TRY(ruga_result_read_lattice(reader, frame, NULL, NULL, buffers->lattice));
+        }
+        if (result->segment_count > 0) {
+            RUGA_TRY(ruga_result_read_creases(reader, frame, buffers->angle, buffers->rest, &copy.gap));
+        }
+        if (ruga_result_reader_header(reader)->handle_count > 0) {
+            RUGA_TRY(ruga_result_read_handle_force(reader, frame, buffers->force));
         }
         bool found = false;
         double* restart = frame == count - 1 ? last_restart : buffers->restart;
@@ -462,6 +519,9 @@ static ruga_status copy_file(ruga_result_reader* reader, ruga_result* result, do
     RUGA_TRY_DONE(RUGA_NEW(buffers.embedded, 3 * (size_t)result->vertex_count));
     RUGA_TRY_DONE(RUGA_NEW(buffers.lattice, 3 * (size_t)result->node_count));
     RUGA_TRY_DONE(RUGA_NEW(buffers.restart, (size_t)result->restart_doubles + 1));
+    RUGA_TRY_DONE(RUGA_NEW(buffers.angle, (size_t)result->segment_count));
+    RUGA_TRY_DONE(RUGA_NEW(buffers.rest, (size_t)result->segment_count));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(buffers.force, 3 * (size_t)result->handle_count));
     RUGA_TRY_DONE(copy_frames(reader, result, &buffers, restart));
     RUGA_TRY_DONE(publish(result));
 done:
@@ -469,6 +529,9 @@ done:
     ruga_release(buffers.embedded);
     ruga_release(buffers.lattice);
     ruga_release(buffers.restart);
+    ruga_release(buffers.angle);
+    ruga_release(buffers.rest);
+    ruga_release(buffers.force);
     return status;
 }
 

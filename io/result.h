@@ -12,6 +12,18 @@
 
 typedef struct ruga_result ruga_result;
 
+// The creases' segments: straight pieces between two vertices of the mesh.
+typedef struct ruga_result_creases {
+    int segment_count;     // S, above 0
+    const int* segment;    // [S][2] vertices
+    const int* crease;     // [S] the crease it belongs to
+    const double* length;  // [S] m, at rest
+    const double* stiffness; // [S] N
+    const char* assignment;  // [S] 'M', 'V', 'F', 'U' as in FOLD
+    int crease_count;
+    char* const* name; // [crease_count] where each comes from
+} ruga_result_creases;
+
 // What stands in the file from the start.
 typedef struct ruga_result_header {
     const ruga_mesh* mesh;
@@ -25,6 +37,8 @@ typedef struct ruga_result_header {
     int restart_doubles;                                               // length of the restart vector
     // Where the skin varies, otherwise NULL: [V] m, [V] Pa, [V][2], and [V] m, local eq. 3
     const double *vertex_thickness, *vertex_young, *vertex_growth, *vertex_wavelength;
+    const ruga_result_creases* creases; // NULL = none
+    int handle_count;
 } ruga_result_header;
 
 // One frame. Pointers to arrays of the caller; lattice_position NULL with interior: none (and embedded).
@@ -35,6 +49,9 @@ typedef struct ruga_result_frame {
     const double* lattice_position; // [N][3]
     ruga_report report;
     const double* restart; // [restart_doubles]
+    const double *crease_angle, *crease_rest; // [S] rad; only with creases
+    double gap;                               // m, largest between what is sewn together
+    const double* handle_force;               // [handles][3] N, only with handles
 } ruga_result_frame;
 
 // A new file. It is written under the temporary name `path.part-PID`, and takes the place of what stood at
@@ -68,6 +85,10 @@ const ruga_result_header* ruga_result_reader_header(const ruga_result_reader* re
 // Each may be NULL; position and embedded [V][3] of the caller.
 ruga_status ruga_result_read_frame(ruga_result_reader* reader, int frame, double* time, double* position,
                                    double* embedded, ruga_report* report);
+// Creases of a frame: angles and rest angles [S] rad, gap in m; each may be NULL. RUGA_BAD_INPUT without creases.
+ruga_status ruga_result_read_creases(ruga_result_reader* reader, int frame, double* angle, double* rest, double* gap);
+// Forces of the handles on the skin, [handles][3] N; zero where the file (of an older version) has none.
+ruga_status ruga_result_read_handle_force(ruga_result_reader* reader, int frame, double* force);
 // Lattice of the file: counts, and node positions of a frame [N][3]; each may be NULL. Without an interior
 // the counts are 0.
 ruga_status ruga_result_read_lattice(ruga_result_reader* reader, int frame, int* node_count,
@@ -75,5 +96,9 @@ ruga_status ruga_result_read_lattice(ruga_result_reader* reader, int frame, int*
 // Its nodes at rest [N][3] and its elements [E][nodes_per_element], 27 or 8; each may be NULL.
 ruga_status ruga_result_read_lattice_rest(ruga_result_reader* reader, int* nodes_per_element, int* elements,
                                           double* rest);
+// A dataset that not every result has, of any kind of number: its size[rank], rank <= 3, and its values, to be released
+// by the caller; *values NULL where there is none. RUGA_BAD_INPUT where it has another rank.
+ruga_status ruga_result_read_optional(ruga_result_reader* reader, const char* name, int rank, size_t* size,
+                                      double** values);
 
 #endif

@@ -11,6 +11,10 @@ static const char* const set_names[RUGA_RESULT_SETS] = {
     RUGA_RESULT_COUNTS(COUNT_NAME) RUGA_RESULT_REALS(COUNT_NAME) "/stats/outcome",
     "/restart/vector",
     "/restart/frame",
+    "/creases/angle",
+    "/creases/rest_angle",
+    "/creases/gap",
+    "/stats/handle_force",
 };
 
 const char* ruga_result_set_name(int set) {
@@ -52,7 +56,8 @@ bool ruga_result_get_report(const hid_t* sets, hsize_t row, ruga_report* report)
         return false;                                                                                        \
     }
 #define GET_REAL(name)                                                                                       \
-    if (!ruga_hdf5_get_row(column[RUGA_RESULT_COLUMN_##name], H5T_NATIVE_DOUBLE, row, &report->name)) {      \
+    if (column[RUGA_RESULT_COLUMN_##name] >= 0 &&                                                            \
+        !ruga_hdf5_get_row(column[RUGA_RESULT_COLUMN_##name], H5T_NATIVE_DOUBLE, row, &report->name)) {      \
         return false;                                                                                        \
     }
     RUGA_RESULT_COUNTS(GET_COUNT)

@@ -16,7 +16,7 @@ enum { RUGA_RESULT_FORMAT = 1 }; // attribute `format`; a reader refuses a later
     X(residual_shell)                                                                                        \
     X(residual_coupled)                                                                                      \
     X(constraint_residual) X(energy_membrane) X(energy_bending) X(energy_foundation) X(energy_interior)      \
-        X(energy_kinetic) X(energy_external) X(seconds_total) X(seconds_interior) X(seconds_assembly)        \
+        X(energy_kinetic) X(energy_external) X(energy_hinge) X(seconds_total) X(seconds_interior) X(seconds_assembly)        \
             X(seconds_factor) X(seconds_solve) X(seconds_other)
 
 typedef enum ruga_result_column {
@@ -36,6 +36,10 @@ enum {
     RUGA_RESULT_STATS, // first of RUGA_RESULT_COLUMNS
     RUGA_RESULT_RESTART = RUGA_RESULT_STATS + RUGA_RESULT_COLUMNS,
     RUGA_RESULT_RESTART_FRAME,
+    RUGA_RESULT_ANGLE, // with creases only
+    RUGA_RESULT_REST_ANGLE,
+    RUGA_RESULT_GAP,
+    RUGA_RESULT_HANDLE_FORCE, // with handles only
     RUGA_RESULT_SETS
 };
 
@@ -45,6 +49,10 @@ const char* ruga_result_set_name(int set);
 hid_t ruga_result_set_type(int set);
 static inline bool ruga_result_set_is_interior(int set) {
     return set == RUGA_RESULT_EMBEDDED || set == RUGA_RESULT_LATTICE;
+}
+
+static inline bool ruga_result_set_is_crease(int set) {
+    return set == RUGA_RESULT_ANGLE || set == RUGA_RESULT_REST_ANGLE || set == RUGA_RESULT_GAP;
 }
 
 bool ruga_result_put_report(const hid_t* sets, hsize_t row, const ruga_report* report);

@@ -26,6 +26,10 @@ struct ruga_result_reader {
     char* scene_text;
     double *thickness, *young, *growth, *wavelength; // or NULL
     ruga_result_header header;
+    ruga_result_creases creases;
+    int *segment, *segment_crease;
+    double *crease_length, *crease_stiffness;
+    char *assignment, **crease_name;
 };
 
 // --- Opening ---
@@ -251,6 +255,78 @@ static ruga_status get_skin(ruga_hdf5* hdf5, ruga_result_reader* reader) {
     return RUGA_OK;
 }
 
+// --- Creases ---
+
+// Strings of a dataset, copied.
+static ruga_status get_texts(ruga_hdf5* hdf5, hid_t file, const char* name, int* count, char*** texts) {
+    ruga_status status = RUGA_OK;
+    hsize_t rows = 0;
+    char** raw = NULL;
+    hid_t set = H5Dopen2(file, name, H5P_DEFAULT), type = ruga_hdf5_text_type(), space = -1;
+    bool ok = set >= 0 && type >= 0 && ruga_hdf5_shape(set, 1, &rows) && rows <= INT_MAX / 16 &&
+              H5Dget_storage_size(set) >= 16 * rows && (space = H5Dget_space(set)) >= 0;
+    RUGA_TRY_DONE(ruga_hdf5_check(hdf5, ok, RUGA_BAD_INPUT, name));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(raw, rows + 1));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(*texts, rows + 1));
+    ok = rows == 0 || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, raw) >= 0;
+    RUGA_TRY_DONE(ruga_hdf5_check(hdf5, ok, RUGA_BAD_INPUT, name));
+    *count = (int)rows;
+    for (hsize_t i = 0; i < rows && status == RUGA_OK; i++) {
+        (*texts)[i] = ruga_copy_string(raw[i] ? raw[i] : "");
+        status = (*texts)[i] ? RUGA_OK : ruga_fail(RUGA_NO_MEMORY, "out of memory: %s", name);
+    }
+    (void)H5Dvlen_reclaim(type, space, H5P_DEFAULT, raw);
+done:
+    ruga_release(raw);
+    if (space >= 0) {
+        (void)H5Sclose(space);
+    }
+    if (type >= 0) {
+        (void)H5Tclose(type);
+    }
+    if (set >= 0) {
+        (void)H5Dclose(set);
+    }
+    return status;
+}
+
+static ruga_status get_column(ruga_hdf5* hdf5, hid_t file, const char* name, int wanted, double** data) {
+    int rows = 0;
+    RUGA_TRY(get_reals(hdf5, file, name, 1, &rows, data));
+    return rows == wanted ? RUGA_OK
+                          : ruga_fail(RUGA_BAD_INPUT, "%s: %s has %d rows, not %d: the file is damaged", hdf5->path, name,
+                                      rows, wanted);
+}
+
+static ruga_status get_creases(ruga_hdf5* hdf5, ruga_result_reader* r) {
+    ruga_result_creases* c = &r->creases;
+    int rows = 0, columns;
+    if (H5Lexists(r->file, "/creases", H5P_DEFAULT) <= 0) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(get_integers(hdf5, r->file, "/creases/segments", 2, -1, &c->segment_count, &r->segment));
+    RUGA_TRY(get_integers(hdf5, r->file, "/creases/segment_crease", 1, c->segment_count, &rows, &r->segment_crease));
+    RUGA_TRY(get_column(hdf5, r->file, "/creases/length", c->segment_count, &r->crease_length));
+    RUGA_TRY(get_column(hdf5, r->file, "/creases/stiffness", c->segment_count, &r->crease_stiffness));
+    RUGA_TRY(get_array(hdf5, r->file, "/creases/assignment", H5T_NATIVE_CHAR, 1, 1, &rows, &columns,
+                       (void**)&r->assignment));
+    RUGA_TRY(get_texts(hdf5, r->file, "/creases/names", &c->crease_count, &r->crease_name));
+    bool ok = rows == c->segment_count && rows > 0;
+    for (int s = 0; ok && s < c->segment_count; s++) {
+        const int* end = r->segment + 2 * (size_t)s;
+        ok = end[0] >= 0 && end[0] < r->mesh.vertex_count && end[1] >= 0 && end[1] < r->mesh.vertex_count &&
+             r->segment_crease[s] >= 0 && r->segment_crease[s] < c->crease_count;
+    }
+    c->segment = r->segment;
+    c->crease = r->segment_crease;
+    c->length = r->crease_length;
+    c->stiffness = r->crease_stiffness;
+    c->assignment = r->assignment;
+    c->name = r->crease_name;
+    r->header.creases = c;
+    return ok ? RUGA_OK : ruga_fail(RUGA_BAD_INPUT, "%s: /creases does not fit the mesh: the file is damaged", hdf5->path);
+}
+
 // --- Attributes ---
 
 static bool get_hash(hid_t root, const char* name, uint64_t* hash) {
@@ -343,16 +419,30 @@ static bool set_fits(const ruga_result_reader* reader, int set) {
         return ruga_hdf5_shape(reader->set[set], 2, size) && size[0] == 2 && size[1] <= INT_MAX;
     case RUGA_RESULT_RESTART_FRAME:
         return ruga_hdf5_shape(reader->set[set], 1, size) && size[0] == 2;
+    case RUGA_RESULT_ANGLE:
+    case RUGA_RESULT_REST_ANGLE:
+        return ruga_hdf5_shape(reader->set[set], 2, size) && size[0] >= frames &&
+               size[1] == (hsize_t)reader->creases.segment_count;
+    case RUGA_RESULT_HANDLE_FORCE:
+        return ruga_hdf5_shape(reader->set[set], 3, size) && size[0] >= frames && size[1] <= INT_MAX / 3 && size[2] == 3;
     default:
         return ruga_hdf5_shape(reader->set[set], 1, size) && size[0] >= frames;
     }
+}
+
+// Whether a file may be without it: what depends on the scene, and what older versions did not write.
+static bool set_may_lack(const ruga_result_reader* reader, int set) {
+    return (ruga_result_set_is_interior(set) && !reader->has_interior) ||
+           (ruga_result_set_is_crease(set) && !reader->header.creases) ||
+           ((set == RUGA_RESULT_HANDLE_FORCE || set == RUGA_RESULT_STATS + RUGA_RESULT_COLUMN_energy_hinge) &&
+            !exists(reader->file, "/stats", ruga_result_set_name(set)));
 }
 
 // After /frames/time, so that each has at least as many rows although a writer may be at work.
 static ruga_status open_sets(ruga_hdf5* hdf5, ruga_result_reader* reader) {
     RUGA_TRY(get_frame_count(hdf5, reader));
     for (int set = RUGA_RESULT_TIME + 1; set < RUGA_RESULT_SETS; set++) {
-        if (ruga_result_set_is_interior(set) && !reader->has_interior) {
+        if (set_may_lack(reader, set)) {
             continue;
         }
         const char* name = ruga_result_set_name(set);
@@ -361,8 +451,12 @@ static ruga_status open_sets(ruga_hdf5* hdf5, ruga_result_reader* reader) {
             RUGA_TRY(ruga_hdf5_check(hdf5, false, RUGA_BAD_INPUT, name));
         }
     }
-    hsize_t size[2];
+    hsize_t size[2], forces[3];
     bool ok = ruga_hdf5_shape(reader->set[RUGA_RESULT_RESTART], 2, size);
+    if (reader->set[RUGA_RESULT_HANDLE_FORCE] >= 0) {
+        ok = ok && ruga_hdf5_shape(reader->set[RUGA_RESULT_HANDLE_FORCE], 3, forces);
+        reader->header.handle_count = ok ? (int)forces[1] : 0;
+    }
     reader->header.restart_doubles = ok ? (int)size[1] : 0;
     return ruga_hdf5_check(hdf5, ok, RUGA_BAD_INPUT, "/restart/vector");
 }
@@ -393,6 +487,7 @@ static ruga_status read_all(ruga_hdf5* hdf5, ruga_result_reader* reader) {
     RUGA_TRY(get_header(hdf5, reader));
     RUGA_TRY(get_mesh(hdf5, reader->file, &reader->mesh));
     RUGA_TRY(get_skin(hdf5, reader));
+    RUGA_TRY(get_creases(hdf5, reader));
     RUGA_TRY(get_lattice_shape(hdf5, reader));
     return open_sets(hdf5, reader);
 }
@@ -444,6 +539,15 @@ void ruga_result_reader_close(ruga_result_reader** reader) {
     ruga_release(r->young);
     ruga_release(r->growth);
     ruga_release(r->wavelength);
+    for (int i = 0; r->crease_name && r->crease_name[i]; i++) {
+        ruga_release(r->crease_name[i]);
+    }
+    ruga_release(r->crease_name);
+    ruga_release(r->segment);
+    ruga_release(r->segment_crease);
+    ruga_release(r->crease_length);
+    ruga_release(r->crease_stiffness);
+    ruga_release(r->assignment);
     ruga_release(r->scene_text);
     ruga_release(r->path);
     ruga_release(r);
@@ -493,6 +597,35 @@ ruga_status ruga_result_read_frame(ruga_result_reader* reader, int frame, double
               (!embedded || get_row(reader, RUGA_RESULT_EMBEDDED, frame, embedded)) &&
               (!report || ruga_result_get_report(reader->set, (hsize_t)frame, report));
     ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "a frame cannot be read");
+    ruga_hdf5_end(&hdf5);
+    return status;
+}
+
+ruga_status ruga_result_read_creases(ruga_result_reader* reader, int frame, double* angle, double* rest, double* gap) {
+    RUGA_TRY(check_frame(reader, frame));
+    if (!reader->header.creases) {
+        return ruga_fail(RUGA_BAD_INPUT, "%s: has no creases", reader->path);
+    }
+    ruga_hdf5 hdf5;
+    ruga_hdf5_begin(&hdf5, reader->path);
+    bool ok = (!angle || get_row(reader, RUGA_RESULT_ANGLE, frame, angle)) &&
+              (!rest || get_row(reader, RUGA_RESULT_REST_ANGLE, frame, rest)) &&
+              (!gap || get_row(reader, RUGA_RESULT_GAP, frame, gap));
+    ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "the creases of a frame cannot be read");
+    ruga_hdf5_end(&hdf5);
+    return status;
+}
+
+ruga_status ruga_result_read_handle_force(ruga_result_reader* reader, int frame, double* force) {
+    RUGA_TRY(check_frame(reader, frame));
+    if (reader->set[RUGA_RESULT_HANDLE_FORCE] < 0) {
+        memset(force, 0, 3 * (size_t)reader->header.handle_count * sizeof *force);
+        return RUGA_OK;
+    }
+    ruga_hdf5 hdf5;
+    ruga_hdf5_begin(&hdf5, reader->path);
+    bool ok = get_row(reader, RUGA_RESULT_HANDLE_FORCE, frame, force);
+    ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "the forces of handles cannot be read");
     ruga_hdf5_end(&hdf5);
     return status;
 }
@@ -573,5 +706,43 @@ ruga_status ruga_result_read_restart(ruga_result_reader* reader, int frame, doub
     }
     ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "the restart data cannot be read");
     ruga_hdf5_end(&hdf5);
+    return status;
+}
+
+static ruga_status get_optional(ruga_hdf5* hdf5, hid_t set, const char* name, int rank, size_t* size, double** values) {
+    hsize_t found[3] = {1, 1, 1};
+    bool ok = set >= 0 && ruga_hdf5_shape(set, rank, found) && found[0] <= INT_MAX && found[1] <= INT_MAX / 3 &&
+              found[2] <= INT_MAX / 3 && H5Dget_storage_size(set) >= found[0] * found[1] * found[2];
+    RUGA_TRY(ruga_hdf5_check(hdf5, ok, RUGA_BAD_INPUT, name));
+    for (int i = 0; i < rank; i++) {
+        size[i] = (size_t)found[i];
+    }
+    RUGA_TRY(RUGA_NEW(*values, found[0] * found[1] * found[2]));
+    ok = H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values) >= 0;
+    return ruga_hdf5_check(hdf5, ok, RUGA_BAD_INPUT, name);
+}
+
+ruga_status ruga_result_read_optional(ruga_result_reader* reader, const char* name, int rank, size_t* size,
+                                      double** values) {
+    char group[64];
+    *values = NULL;
+    RUGA_ASSERT(rank >= 1 && rank <= 3 && strlen(name) < sizeof group);
+    memcpy(group, name, strlen(name) + 1);
+    *strrchr(group, '/') = '\0';
+    ruga_hdf5 hdf5;
+    ruga_hdf5_begin(&hdf5, reader->path);
+    ruga_status status = RUGA_OK;
+    if (exists(reader->file, group, name)) {
+        hid_t set = H5Dopen2(reader->file, name, H5P_DEFAULT);
+        status = get_optional(&hdf5, set, name, rank, size, values);
+        if (set >= 0) {
+            (void)H5Dclose(set);
+        }
+    }
+    ruga_hdf5_end(&hdf5);
+    if (status != RUGA_OK) {
+        ruga_release(*values);
+        *values = NULL;
+    }
     return status;
 }

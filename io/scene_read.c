@@ -383,6 +383,41 @@ static ruga_status read_pair(const place* p, ruga_string* value) {
     return RUGA_OK;
 }
 
+static ruga_status read_points(reader* r, const place* p, ruga_string* value) {
+    ruga_scene_points points = {0};
+    size_t width = (size_t)p->key->count;
+    if (p->node->kind != RUGA_YAML_LIST || p->node->count < 2) {
+        return fail_kind(p, p->node, "a list of two or more points");
+    }
+    RUGA_TRY(RUGA_POOL_TAKE(&r->parts->pool, points.value, width * (size_t)p->node->count));
+    ruga_string_add(value, "[");
+    for (const ruga_yaml_node* row = p->node->first; row; row = row->next, points.count++) {
+        ruga_string_add(value, points.count == 0 ? "" : ", ");
+        RUGA_TRY(read_row(p, row, p->key->count, points.value + width * (size_t)points.count, value));
+    }
+    ruga_string_add(value, "]");
+    memcpy(p->target + p->key->offset, &points, sizeof points);
+    return RUGA_OK;
+}
+
+static ruga_status read_values(reader* r, const place* p, ruga_string* value) {
+    const ruga_yaml_node* node = p->node;
+    ruga_scene_points points = {.count = node->kind == RUGA_YAML_LIST ? node->count : 1};
+    points.word = node->kind == RUGA_YAML_SCALAR && p->key->choices && strcmp(node->text, p->key->choices) == 0;
+    if (points.count == 0) {
+        return fail_kind(p, node, "a value or a list of them");
+    }
+    RUGA_TRY(RUGA_POOL_TAKE(&r->parts->pool, points.value, points.count));
+    if (points.word) {
+        ruga_string_add(value, "%s", p->key->choices);
+    } else {
+        bool one = node->kind == RUGA_YAML_LIST && node->count == 1;
+        RUGA_TRY(read_row(p, one ? node->first : node, points.count, points.value, value));
+    }
+    memcpy(p->target + p->key->offset, &points, sizeof points);
+    return RUGA_OK;
+}
+
 static ruga_status read_every(const place* p, ruga_string* value) {
     if (p->node->kind != RUGA_YAML_SCALAR || strcmp(p->node->text, "true") != 0) {
         return fail_kind(p, p->node, "true");
@@ -423,6 +458,10 @@ static ruga_status read_value(reader* r, const place* p, ruga_string* value) {
         return read_every(p, value);
     case RUGA_KEY_PAIR:
         return read_pair(p, value);
+    case RUGA_KEY_POINTS:
+        return read_points(r, p, value);
+    case RUGA_KEY_VALUES:
+        return read_values(r, p, value);
     case RUGA_KEY_SECTION:
     case RUGA_KEY_ENTRIES:
     case RUGA_KEY_LATER:
@@ -449,7 +488,8 @@ static ruga_status read_leaf(reader* r, const place* p, bool given) {
 // The default of an absent key in its section; NULL where there is none to set or show.
 static const char* fallback_of(const reader* r, const ruga_key* key, const ruga_yaml_node* section) {
     const char* path = key->path;
-    if (strcmp(path, "interior.motion") == 0 && ruga_yaml_find(r->root, "prescribed")) {
+    if (strcmp(path, "interior.motion") == 0 &&
+        (ruga_yaml_find(r->root, "prescribed") || ruga_yaml_find(r->root, "follow"))) {
         return "prescribed";
     }
     if (strcmp(path, "mesh.make.edge") == 0 && ruga_yaml_find(section, "cells")) {
@@ -466,6 +506,12 @@ static const char* fallback_of(const reader* r, const ruga_key* key, const ruga_
     }
     if (strcmp(path, "handles.N.hold") == 0 && !ruga_yaml_find(section, "fix") &&
         !ruga_yaml_find(section, "move")) {
+        return NULL;
+    }
+    if (strcmp(path, "creases.N.hinge.stiffness") == 0 && ruga_yaml_find(section, "length")) {
+        return NULL;
+    }
+    if (strcmp(path, "creases.N.curve.frame") == 0 && !ruga_yaml_find(section, "fold")) {
         return NULL;
     }
     if (strcmp(path, "handles.N.during") == 0 && ruga_yaml_find(section, "fix")) {
@@ -519,8 +565,9 @@ static ruga_status read_absent(reader* r, const place* p, const ruga_yaml_node* 
 }
 
 // The structs of a list's entries, at their defaults, and the size of one.
-static ruga_status take_entries(reader* r, const char* path, int count, char** first, size_t* size) {
+static ruga_status take_entries(reader* r, const place* p, int count, char** first, size_t* size) {
     ruga_pool* pool = &r->parts->pool;
+    const char* path = p->key->path;
     if (strcmp(path, "handles") == 0) {
         ruga_handle_def* handle;
         RUGA_TRY(RUGA_POOL_TAKE(pool, handle, count));
@@ -541,6 +588,23 @@ static ruga_status take_entries(reader* r, const char* path, int count, char** f
         r->def->keyframe_count = count;
         *first = (char*)keyframe;
         *size = sizeof *keyframe;
+    } else if (strcmp(path, "creases") == 0) {
+        ruga_scene_crease* crease;
+        RUGA_TRY(RUGA_POOL_TAKE(pool, crease, count));
+        for (int i = 0; i < count; i++) {
+            crease[i] = (ruga_scene_crease){.yield = INFINITY, .rate = INFINITY};
+        }
+        r->parts->crease = crease;
+        r->parts->crease_count = count;
+        *first = (char*)crease;
+        *size = sizeof *crease;
+    } else if (strcmp(path, "creases.N.hinge.animate") == 0) {
+        ruga_scene_crease* crease = (ruga_scene_crease*)(void*)p->target;
+        RUGA_TRY(RUGA_POOL_TAKE(pool, crease->keys, count));
+        memset(crease->keys, 0, sizeof *crease->keys * (size_t)count);
+        crease->key_count = count;
+        *first = (char*)crease->keys;
+        *size = sizeof *crease->keys;
     } else {
         ruga_scene_vary* vary;
         RUGA_TRY(RUGA_POOL_TAKE(pool, vary, count));
@@ -562,7 +626,7 @@ static ruga_status read_entries(reader* r, const place* p) {
     if (node->kind != RUGA_YAML_LIST) {
         return fail_kind(p, node, "a list of maps");
     }
-    RUGA_TRY(take_entries(r, p->key->path, node->count, &entry, &size));
+    RUGA_TRY(take_entries(r, p, node->count, &entry, &size));
     const ruga_yaml_node* item = node->first;
     for (int i = 0; i < node->count; i++, item = item->next) {
         char section[PATH_LENGTH], shown[PATH_LENGTH];
@@ -623,6 +687,8 @@ static ruga_status read_key(reader* r, const ruga_key* key, const char* shown, c
     place p = {key, path, ruga_yaml_find(node, name), target};
     if (strcmp(key->path, "mesh") == 0) {
         p.target = (char*)&r->parts->source;
+    } else if (strcmp(key->path, "follow") == 0) {
+        p.target = (char*)&r->parts->follow;
     }
     if (!p.node) {
         return read_absent(r, &p, node, above);
@@ -654,7 +720,7 @@ static ruga_status read_section(reader* r, const char* section, const char* show
             continue;
         }
         bool of_interior = strcmp(key->path, "lattice") == 0 || strcmp(key->path, "coupling") == 0 ||
-                           strcmp(key->path, "prescribed") == 0;
+                           strcmp(key->path, "prescribed") == 0 || strcmp(key->path, "follow") == 0;
         const ruga_yaml_node* given = node ? ruga_yaml_find(node, ruga_key_name(key)) : NULL;
         if (of_interior && !r->def->has_interior) {
             if (given) {

@@ -29,16 +29,12 @@ static ruga_status exactly_one(const ruga_yaml_node* map, const char* shown, con
     return *which >= 0 ? RUGA_OK : ruga_yaml_fail(map, shown, "one of these keys is needed: %s", list);
 }
 
-static ruga_status check_source(const ruga_yaml_node* mesh, const ruga_scene_source* source) {
+static ruga_status check_source(const ruga_yaml_node* mesh) {
     static const char* const kinds[] = {"file", "make", NULL};
     int which;
     RUGA_TRY(exactly_one(mesh, "mesh", kinds, &which));
     if (which == 0) {
-        size_t length = strlen(source->file);
-        return length > 5 && strcmp(source->file + length - 5, ".fold") == 0
-                   ? ruga_yaml_fail(ruga_yaml_find(mesh, "file"), "mesh.file",
-                                    "fold files are not available yet in this version of Ruga")
-                   : RUGA_OK;
+        return RUGA_OK;
     }
     const ruga_yaml_node* unit = ruga_yaml_find(mesh, "unit");
     if (unit) {
@@ -57,10 +53,21 @@ static ruga_status check_interior(const ruga_yaml_node* root, const ruga_model_d
     const ruga_yaml_node* prescribed = ruga_yaml_find(root, "prescribed");
     const ruga_interior_motion motion = def->interior.motion;
     const ruga_yaml_node* given = ruga_yaml_find(interior, "motion");
-    if (motion == RUGA_INTERIOR_PRESCRIBED && def->keyframe_count == 0) {
+    const ruga_yaml_node* follow = ruga_yaml_find(root, "follow");
+    if (follow && prescribed) {
+        return ruga_yaml_fail(follow, "follow", "prescribed is given too; keep one of them");
+    }
+    if (follow && motion != RUGA_INTERIOR_PRESCRIBED) {
+        return ruga_yaml_fail(
+            follow, "follow",
+            "a moving surface drives a prescribed interior only; write interior.motion: prescribed, or "
+            "leave the key out");
+    }
+    if (motion == RUGA_INTERIOR_PRESCRIBED && def->keyframe_count == 0 && !follow) {
         return ruga_yaml_fail(
             given ? given : prescribed, given ? "interior.motion" : "prescribed",
-            "prescribed motion needs at least one keyframe: prescribed: [{time: 0 s, ...}]");
+            "prescribed motion needs at least one keyframe: prescribed: [{time: 0 s, ...}], or a surface to "
+            "follow: follow: {file: body.pc2}");
     }
     if (motion != RUGA_INTERIOR_PRESCRIBED && prescribed) {
         return ruga_yaml_fail(
@@ -213,8 +220,93 @@ static ruga_status check_vary(const ruga_yaml_node* node, const char* shown, rug
                                       "there is nothing that it sets: thickness, young, growth_u, growth_v");
 }
 
+static ruga_status check_values(const ruga_yaml_node* hinge, const char* shown, const char* key,
+                                const ruga_scene_points* values, int points) {
+    const ruga_yaml_node* node = ruga_yaml_find(hinge, key);
+    if (!node || node->kind != RUGA_YAML_LIST || values->count == points) {
+        return RUGA_OK;
+    }
+    return points > 0 ? ruga_yaml_fail(node, shown, "%s has %d values, but the curve has %d points", key,
+                                       values->count, points)
+                      : ruga_yaml_fail(node, shown, "%s takes one value here; one for each point goes with polyline, "
+                                                    "uv or vertices", key);
+}
+
+static ruga_status check_keys_of_hinge(const ruga_yaml_node* hinge, const char* shown, const ruga_scene_crease* crease) {
+    static const char* const values[] = {"angle", "scale", NULL};
+    const ruga_yaml_node* list = ruga_yaml_find(hinge, "animate");
+    const ruga_yaml_node* node = list ? list->first : NULL;
+    for (int k = 0; k < crease->key_count; k++, node = node->next) {
+        char path[80];
+        int which;
+        (void)snprintf(path, sizeof path, "%.40s.animate.%d", shown, k);
+        RUGA_TRY(exactly_one(node, path, values, &which));
+        if (k > 0 && !(crease->keys[k].time > crease->keys[k - 1].time)) {
+            return ruga_yaml_fail(node, path, "its time of %g s is not later than the %g s before it",
+                                  crease->keys[k].time, crease->keys[k - 1].time);
+        }
+    }
+    return RUGA_OK;
+}
+
+static ruga_status check_crease(const ruga_yaml_node* node, const char* shown, const ruga_scene_crease* crease) {
+    static const char* const kinds[] = {"fold", "svg", "polyline", "uv", "vertices", "group", NULL};
+    const ruga_yaml_node *curve = ruga_yaml_find(node, "curve"), *hinge = ruga_yaml_find(node, "hinge");
+    char path[48];
+    int which;
+    (void)snprintf(path, sizeof path, "%.30s.curve", shown);
+    RUGA_TRY(exactly_one(curve, path, kinds, &which));
+    bool drawn = which == 2 || which == 3;
+    int points = which == 2 ? crease->polyline.count
+                 : which == 3 ? crease->uv.count
+                 : which == 4 ? crease->path.vertex_count
+                              : 0;
+    if (crease->closed && !drawn) {
+        return ruga_yaml_fail(ruga_yaml_find(curve, "closed"), path, "closed belongs to polyline and uv");
+    }
+    if (ruga_yaml_find(curve, "frame") && which != 0) {
+        return ruga_yaml_fail(ruga_yaml_find(curve, "frame"), path, "frame belongs to fold");
+    }
+    (void)snprintf(path, sizeof path, "%.30s.hinge", shown);
+    if (crease->cut && hinge) {
+        return ruga_yaml_fail(hinge, path, "a cut has no hinge");
+    }
+    if (ruga_yaml_find(hinge, "stiffness") && ruga_yaml_find(hinge, "length")) {
+        return ruga_yaml_fail(hinge, path, "stiffness and length are both given; keep one of them");
+    }
+    if (crease->rest.word && which > 1) {
+        return ruga_yaml_fail(ruga_yaml_find(hinge, "rest"), path, "assigned angles belong to fold and svg");
+    }
+    RUGA_TRY(check_values(hinge, path, "stiffness", &crease->stiffness, points));
+    RUGA_TRY(check_values(hinge, path, "rest", &crease->rest, points));
+    return check_keys_of_hinge(hinge, path, crease);
+}
+
+static ruga_status check_creases(const ruga_yaml_node* root, const ruga_scene_parts* parts) {
+    const ruga_yaml_node* list = ruga_yaml_find(root, "creases");
+    const ruga_yaml_node* node = list ? list->first : NULL;
+    for (int i = 0; i < parts->crease_count; i++, node = node->next) {
+        char shown[32];
+        (void)snprintf(shown, sizeof shown, "creases.%d", i);
+        RUGA_TRY(check_crease(node, shown, &parts->crease[i]));
+    }
+    return RUGA_OK;
+}
+
+static ruga_status check_skin(const ruga_yaml_node* root, const ruga_model_def* def) {
+    const ruga_yaml_node* skin = ruga_yaml_find(root, "skin");
+    if (def->skin.motion == RUGA_SKIN_DYNAMIC && def->has_interior) {
+        return ruga_yaml_fail(ruga_yaml_find(skin, "motion"), "skin.motion", "dynamic needs interior: none");
+    }
+    return def->skin.model == RUGA_SKIN_SPRINGS && def->has_interior
+               ? ruga_yaml_fail(ruga_yaml_find(skin, "model"), "skin.model", "springs needs interior: none")
+               : RUGA_OK;
+}
+
 ruga_status ruga_scene_check_keys(const ruga_yaml_node* root, ruga_scene_parts* parts, ruga_model_def* def) {
-    RUGA_TRY(check_source(ruga_yaml_find(root, "mesh"), &parts->source));
+    RUGA_TRY(check_source(ruga_yaml_find(root, "mesh")));
+    RUGA_TRY(check_skin(root, def));
+    RUGA_TRY(check_creases(root, parts));
     const ruga_yaml_node* varies = ruga_yaml_find(ruga_yaml_find(root, "skin"), "vary");
     const ruga_yaml_node* entry = varies ? varies->first : NULL;
     for (int i = 0; i < parts->vary_count; i++, entry = entry->next) {

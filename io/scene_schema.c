@@ -18,7 +18,9 @@
 #define SOURCE(field)   IN(ruga_scene_source, field)
 #define HANDLE(field)   IN(ruga_handle_def, field)
 #define KEYFRAME(field) IN(ruga_keyframe_def, field)
+#define FOLLOW(field)   IN(ruga_scene_follow, field)
 #define VARY(field)     IN(ruga_scene_vary, field)
+#define CREASE(field)   IN(ruga_scene_crease, field)
 
 #define SECTION(path, fallback, meaning) {path, RUGA_KEY_SECTION, 0, -1, "", fallback, ANY, NULL, meaning}
 #define ENTRIES(path, fallback, meaning) {path, RUGA_KEY_ENTRIES, 0, -1, "", fallback, ANY, NULL, meaning}
@@ -35,6 +37,10 @@
     {path, RUGA_KEY_CHOICE, 1, offset, "", fallback, ANY, choices, meaning}
 #define OTHER(path, kind, offset, dimension, fallback, meaning) \
     {path, kind, 1, offset, dimension, fallback, ANY, NULL, meaning}
+#define POINTS(path, count, offset, dimension, meaning) \
+    {path, RUGA_KEY_POINTS, count, offset, dimension, NULL, ANY, NULL, meaning}
+#define VALUES(path, offset, dimension, fallback, range, word, meaning) \
+    {path, RUGA_KEY_VALUES, 1, offset, dimension, fallback, range, word, meaning}
 #define PAIR(path, offset, dimension, range, meaning) \
     {path, RUGA_KEY_PAIR, 1, offset, dimension, NULL, range, NULL, meaning}
 
@@ -58,7 +64,8 @@ const ruga_key ruga_keys[] = {
 
     SECTION("mesh", REQUIRED, "The surface: either `file` or `make`."),
     OTHER("mesh.file", RUGA_KEY_TEXT, SOURCE(file), "", NULL,
-          "A surface file (.obj .ply .stl .off .gltf .glb), relative to the scene file's folder."),
+          "A surface file (.obj .ply .stl .off .gltf .glb), relative to the scene file's folder. Of a crease pattern "
+          "(.fold .svg) what lies within its outline, in triangles that know nothing of the creases: with `remesh`."),
     SECTION("mesh.make", NULL, "A shape made on the spot, in metres, centred at the origin."),
     CHOICE("mesh.make.shape", SOURCE(make.shape), "pillow", "sheet|slab|bar|pillow|sphere|skirt",
            "What is made; sheet and skirt lie in z = 0 with normals +z, the others are closed."),
@@ -83,10 +90,10 @@ const ruga_key ruga_keys[] = {
            "Length of an edge of the new mesh."),
 
     SECTION("skin", "{}", "The thin shell."),
-    CHOICE("skin.model", MODEL(skin.model), "shell", "shell|!springs|volume",
+    CHOICE("skin.model", MODEL(skin.model), "shell", "shell|springs|volume",
            "shell: a thin shell. volume: thin stiff elements of a volume that is fine throughout, `lattice.cells` "
            "along its longest side and graded in depth; a flat rectangular sheet in a plane of z with `fill: box` and "
-           "prescribed stretches only. `coupling` says nothing then."),
+           "prescribed stretches only. `coupling` says nothing then. springs: cloth of linear, bending and axial-bending springs with the stiffness of the shell but Poisson's ratio 1/3, in dynamic motion."),
     NUMBER("skin.thickness", MODEL(skin.thickness), "m", "2 mm", POSITIVE, "Thickness h."),
     NUMBER("skin.young", MODEL(skin.young), "Pa", "40 MPa", POSITIVE, "Young's modulus."),
     NUMBER("skin.poisson", MODEL(skin.poisson), "1", "0.3", POISSON, "Poisson's ratio."),
@@ -101,11 +108,16 @@ const ruga_key ruga_keys[] = {
     NUMBERS("skin.growth", 2, MODEL(skin.growth), "1", "[1, 1]", POSITIVE,
             "Rest lengths along and across the skin's first direction are multiplied by these."),
     CHOICE(
-        "skin.motion", MODEL(skin.motion), "static", "static|damped|!dynamic",
+        "skin.motion", MODEL(skin.motion), "static", "static|damped|dynamic",
         "static: the skin is in equilibrium at each frame. damped: drawn towards the skin that the interior "
-        "carries along, over the time `relaxation`."),
+        "carries along, over the time `relaxation`. dynamic: with mass, in time; needs `interior: none`."),
     NUMBER("skin.relaxation", MODEL(skin.relaxation), "s", "20 ms", POSITIVE,
            "Relaxation time of damped motion."),
+    NUMBER("skin.damping", MODEL(skin.damping), "s", "0 s", NOT_NEGATIVE,
+           "Of dynamic motion: the viscous stress over the elastic stress of the strain rate. A mode of frequency w "
+           "loses the part w damping / 2 of critical damping."),
+    NUMBER("skin.drag", MODEL(skin.drag), "1/s", "0 1/s", NOT_NEGATIVE,
+           "Of dynamic motion: the force over the momentum with which the air around holds every part back."),
     ENTRIES("skin.vary", "(none)",
             "Where the skin differs from the values above: each entry with a region, or one of gradient, "
             "attribute, texture (in a region, or everywhere), and with one or more of thickness, young, "
@@ -195,10 +207,30 @@ const ruga_key ruga_keys[] = {
     NUMBERS("prescribed.N.bump.direction", 3, KEYFRAME(bump_direction), "1", "[0, 0, -1]", ANY,
             "Direction, of any length but 0."),
 
+    SECTION("follow", "(none)",
+            "A moving surface that the interior follows, in place of `prescribed`: the lattice is fitted to each of its "
+            "samples, linear in between, held outside."),
+    OTHER("follow.file", RUGA_KEY_TEXT, FOLLOW(file), "", REQUIRED,
+          "A point cache (.pc2, .mdd) of the mesh's file, or its .obj files, numbered from 0 or 1 by %d or %04d in the "
+          "name; the same vertices in the same order, in the mesh's unit and scale."),
+    NUMBER("follow.rate", FOLLOW(rate), "1/s", "24 1/s", POSITIVE,
+           "Samples per second. Not for .mdd, which has times of its own."),
+    NUMBER("follow.start", FOLLOW(start), "s", "0 s", ANY, "Time of the first sample."),
+    NUMBER("follow.smoothness", FOLLOW(smoothness), "1", "1e-4", POSITIVE,
+           "Weight of the lattice's second differences beside the mean square distance to the surface."),
+
     SECTION("time", "{}", "Frame k is at k times the step."),
     NUMBER("time.step", MODEL(step), "s", "20 ms", POSITIVE, "Time from frame to frame."),
     INTEGERS("time.frames", 1, MODEL(frames), "50", 1, 1000000,
              "Number of frames after frame 0, the start. The only key that may change for a resumed run."),
+    SECTION("start", "{}", "How a skin in dynamic motion begins."),
+    NUMBER("start.fold", MODEL(start.fold), "1", "0", ANY,
+           "The flat panels between straight creases are turned by this part of the creases' rest angles at time 0. "
+           "Refused where panels would have to bend."),
+    NUMBER("start.cone", MODEL(start.cone), "rad", "0 rad", NOT_NEGATIVE,
+           "Then a sector of the plane z = 0 about the origin that has this angle is rolled into a whole cone, its "
+           "tip at the origin and its axis along -z."),
+    NUMBERS("start.velocity", 3, MODEL(start.velocity), "m/s", "[0, 0, 0]", ANY, "Velocity of what is not held."),
     NUMBERS("gravity", 3, MODEL(gravity), "m/s^2", "[0, 0, 0]", ANY, "Acceleration on skin and interior."),
 
     ENTRIES("handles", "(none)",
@@ -249,6 +281,50 @@ const ruga_key ruga_keys[] = {
     FLAG("solver.allow_coarse", MODEL(solver.allow_coarse), "false",
          "Whether to run with fewer than 3 edges per wavelength."),
 
-    OTHER("creases", RUGA_KEY_LATER, -1, "", NULL, "Creases."),
+    ENTRIES("creases", "(none)", "Curves about which the skin folds, or along which it is cut; docs/creases.md."),
+    SECTION("creases.N.curve", REQUIRED,
+            "Where: one of fold, svg, polyline, uv, vertices, group. Points in metres in the mesh's frame after `unit` "
+            "and `scale`, which also apply to fold and svg; what hangs over the border is trimmed."),
+    OTHER("creases.N.curve.fold", RUGA_KEY_TEXT, CREASE(fold), "", NULL,
+          "All creases of a FOLD file, relative to the scene file's folder; its cuts (C) are cut."),
+    INTEGERS("creases.N.curve.frame", 1, CREASE(frame), "0", 0, 1000000, "The frame of the FOLD file."),
+    OTHER("creases.N.curve.svg", RUGA_KEY_TEXT, CREASE(svg), "", NULL,
+          "All creases of an SVG drawing, by the colour of their strokes; likewise."),
+    POINTS("creases.N.curve.polyline", 3, CREASE(polyline), "m",
+           "Two or more points, brought to the nearest place of the surface."),
+    POINTS("creases.N.curve.uv", 2, CREASE(uv), "1", "Two or more points in the mesh's texture coordinates."),
+    OTHER("creases.N.curve.vertices", RUGA_KEY_VERTICES, CREASE(path), "", NULL,
+          "A path along edges: vertices by their number in the file, from 0; for a made shape, of the mesh itself."),
+    OTHER("creases.N.curve.group", RUGA_KEY_TEXT, CREASE(group), "", NULL, "The border of a group of the mesh."),
+    OTHER("creases.N.curve.stress", RUGA_KEY_LATER, -1, "", NULL, "Along ridges of stress."),
+    FLAG("creases.N.curve.closed", CREASE(closed), "false",
+         "Whether the last point of polyline or uv is joined to the first."),
+    FLAG("creases.N.cut", CREASE(cut), "false", "Whether the curve is cut and stays open, without a hinge."),
+    CHOICE("creases.N.freedom", CREASE(freedom), "auto", "auto|single|full",
+           "single: one hinge for the whole curve, right where it is straight and of one angle. full: what a mesh that "
+           "conforms to the curve may do. auto: full where the curve bends, closes, meets another, or its values vary."),
+    SECTION("creases.N.hinge", "{}", "The spring about the curve, k l / 2 (theta - rest)^2 for a length l of it."),
+    VALUES("creases.N.hinge.stiffness", CREASE(stiffness), "N", "0.02 N", NOT_NEGATIVE, NULL,
+           "k, in N m/rad for each m. One value, or one for each point of polyline, uv or vertices."),
+    NUMBER("creases.N.hinge.length", CREASE(length), "m", NULL, POSITIVE,
+           "In place of stiffness: k = E h^3 / (12 (1 - nu^2)) over this length."),
+    VALUES("creases.N.hinge.rest", CREASE(rest), "rad", "(as the mesh has it)", ANY, "assigned",
+           "Angle at which the spring has no moment: 0 when flat, positive for a valley, where both sides turn to where "
+           "their normals point. assigned: that of the file, +180 deg for valleys and -180 deg for mountains where it "
+           "has none."),
+    NUMBER("creases.N.hinge.scale", CREASE(scale), "1", "1", ANY, "A factor on rest."),
+    ENTRIES("creases.N.hinge.animate", "(none)",
+            "The rest angle over time, linear in between and held outside: `angle`, or `scale` times rest."),
+    NUMBER("creases.N.hinge.animate.N.time", IN(ruga_crease_key, time), "s", "0 s", ANY,
+           "Time; each is later than the one before."),
+    NUMBER("creases.N.hinge.animate.N.angle", IN(ruga_crease_key, angle), "rad", NULL, ANY, "Rest angle."),
+    NUMBER("creases.N.hinge.animate.N.scale", IN(ruga_crease_key, scale), "1", NULL, ANY,
+           "Rest angle as a part of rest and its scale."),
+    NUMBER("creases.N.hinge.yield", CREASE(yield), "rad", "(never)", NOT_NEGATIVE,
+           "Beyond this difference between angle and rest angle the rest angle follows."),
+    NUMBER("creases.N.hinge.rate", CREASE(rate), "1/s", "(at once)", POSITIVE,
+           "How fast it follows: its speed over the excess."),
+    NUMBER("creases.N.hinge.hardening", CREASE(hardening), "1", "0", NOT_NEGATIVE,
+           "Growth of the yield angle for each rad that the rest angle has followed."),
 };
 const int ruga_key_count = sizeof ruga_keys / sizeof ruga_keys[0];

@@ -28,6 +28,8 @@ typedef enum ruga_key_kind {
     RUGA_KEY_VERTICES, // a list of vertex numbers: ruga_region
     RUGA_KEY_EVERY,    // true and nothing else, where the key alone says it all
     RUGA_KEY_PAIR,     // one quantity or a list of two: ruga_scene_pair
+    RUGA_KEY_POINTS,   // a list of rows of `count` quantities: ruga_scene_points
+    RUGA_KEY_VALUES,   // one quantity, a list of them, or the word in `choices`: ruga_scene_points
     RUGA_KEY_LATER,    // belongs to a later version
 } ruga_key_kind;
 
@@ -67,12 +69,40 @@ typedef struct ruga_scene_vary {
     ruga_scene_pair value[RUGA_VARY_VALUES];
 } ruga_scene_vary;
 
+// The follow section.
+typedef struct ruga_scene_follow {
+    char* file; // NULL = none
+    double rate, start, smoothness;
+} ruga_scene_follow;
+
+// Rows of points, or values; `word` where the word stands in their place, count 0 = not given.
+typedef struct ruga_scene_points {
+    int count;
+    double* value;
+    bool word;
+} ruga_scene_points;
+
+// An entry of creases: before its curve is known, which may be many.
+typedef struct ruga_scene_crease {
+    char *fold, *svg, *group;
+    int frame;
+    ruga_scene_points polyline, uv;
+    ruga_region path; // its vertices
+    bool closed, cut;
+    ruga_crease_freedom freedom;
+    ruga_scene_points stiffness, rest;
+    double length, scale; // length 0 = not given
+    int key_count;
+    ruga_crease_key* keys;
+    double yield, rate, hardening;
+} ruga_scene_crease;
+
 typedef struct ruga_key {
     const char* path; // "skin.thickness", "handles.N.region.box"
     ruga_key_kind kind;
     int count;
-    int offset; // bytes in ruga_scene_source, _scene_vary, _handle_def, _keyframe_def or _model_def; -1 =
-                // none
+    int offset; // bytes in ruga_scene_source, _scene_vary, _scene_crease, _crease_key, _handle_def,
+                // _keyframe_def or _model_def; -1 = none
     const char* dimension; // "" where it is no quantity
     // In YAML. NULL: none, the key chooses or must be given. In parentheses: what its absence means, in
     // words. A section with a default of {} is always there, with the defaults of its keys.
@@ -108,7 +138,8 @@ bool ruga_choice_nearest(const char* choices, const char* name, char nearest[32]
 void ruga_range_text(const ruga_range* range, ruga_string* text);
 bool ruga_range_has(const ruga_range* range, double value);
 
-// docs/scene.md
+// docs/scene.md, and the example in it for a key at the top level; NULL where there is none.
+const char* ruga_key_example(const ruga_key* key);
 ruga_status ruga_scene_reference(ruga_string* text);
 
 #endif

@@ -159,6 +159,10 @@ static void gather_gradient(int begin, int end, int chunk, void* context) {
     }
 }
 
+static int side_of(const ruga_shell* shell, int h, int f) {
+    return shell->hinge_side[h][1] / 3 == f;
+}
+
 static void triangle_hessians(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const pass* p = context;
@@ -175,6 +179,10 @@ static void triangle_hessians(int begin, int end, int chunk, void* context) {
             bent +=
                 h < 0 ? 0
                       : 0.25 * shell->hinge_rest[h].stiffness * shell->hinge_angle[h] * shell->hinge_angle[h];
+            while (shell->next_hinge && h >= 0 && (h = shell->next_hinge[h][side_of(shell, h, f)]) >= 0) {
+                moment[i] += (1 - p->clamp) * shell->hinge_moment[h];
+                bent += 0.25 * shell->hinge_rest[h].stiffness * shell->hinge_angle[h] * shell->hinge_angle[h];
+            }
         }
         ruga_hinge_add_hessian(x, moment, shell->triangle_block[f]);
         if (shell->thickness && p->clamp < 1) {

@@ -205,3 +205,28 @@ void ruga_membrane_hessian(ruga_membrane kind, double poisson, const ruga_membra
         block[b][8] += geometric;
     }
 }
+
+// e_a' = f_a.w_a', (w_u.w_v)' = w_u'.w_v + w_u.w_v', w' as w is of x.
+void ruga_membrane_damp(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
+                        const double* const x[3], const double* const v[3], double force[3][3]) {
+    point p;
+    double e1[3], e2[3], w[2][3];
+    evaluate(kind, poisson, rest, x, &p);
+    ruga_subtract(v[1], v[0], e1);
+    ruga_subtract(v[2], v[0], e2);
+    for (int a = 0; a < 2; a++) {
+        for (int c = 0; c < 3; c++) {
+            w[a][c] = rest->slope[0][a] * e1[c] + rest->slope[1][a] * e2[c];
+        }
+    }
+    double eu = ruga_dot(p.f[0], w[0]), ev = ruga_dot(p.f[1], w[1]);
+    double su = rest->stretch * (eu + poisson * ev), sv = rest->stretch * (ev + poisson * eu);
+    double shear = rest->shear * (ruga_dot(w[0], p.w[1]) + ruga_dot(p.w[0], w[1]));
+    for (int c = 0; c < 3; c++) {
+        double pu = su * p.f[0][c] + shear * p.w[1][c];
+        double pv = sv * p.f[1][c] + shear * p.w[0][c];
+        force[1][c] = rest->slope[0][0] * pu + rest->slope[0][1] * pv;
+        force[2][c] = rest->slope[1][0] * pu + rest->slope[1][1] * pv;
+        force[0][c] = -(force[1][c] + force[2][c]);
+    }
+}

@@ -35,4 +35,9 @@ double ruga_membrane_energy(ruga_membrane kind, double poisson, const ruga_membr
 void ruga_membrane_hessian(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
                            const double* const x[3], double clamp, double block[RUGA_TRIANGLE_BLOCKS][9]);
 
+// The material's stiffness against the rates of strain when the corners move with v, as forces: with a time
+// in front it is what damps. Rigid motion gives none.
+void ruga_membrane_damp(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
+                        const double* const x[3], const double* const v[3], double force[3][3]);
+
 #endif

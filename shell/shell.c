@@ -53,9 +53,13 @@ static ruga_status set_triangles(ruga_shell* shell, const ruga_mesh* mesh,
         if (area[f] == 0) {
             return fail_at_face(RUGA_BAD_MESH, mesh, f, "has no area: delete or collapse it, or remesh");
         }
+        const ruga_shell_cut* cut = material->cut;
         for (int i = 0; i < 3; i++) {
-            shell->vertex_mass[shell->triangle[f][i]] += material->skin.density * h * area[f] / 3;
+            double mass = material->skin.density * h * area[f];
+            shell->vertex_mass[shell->triangle[f][i]] += cut ? mass * cut->mass[f][i] : mass / 3;
         }
+        shell->triangle_rest[f].stretch *= cut ? cut->stiffness[f] : 1;
+        shell->triangle_rest[f].shear *= cut ? cut->stiffness[f] : 1;
     }
     return RUGA_OK;
 }
@@ -84,6 +88,9 @@ static void set_hinge(ruga_shell* shell, const ruga_mesh* mesh, const ruga_shell
 static void note_hinge(ruga_shell* shell, int f, int vertex, int h, int side) {
     for (int i = 0; i < 3; i++) {
         if (shell->triangle[f][i] == vertex) {
+            if (shell->next_hinge) {
+                shell->next_hinge[h][side] = shell->triangle_hinge[f][i];
+            }
             shell->triangle_hinge[f][i] = h;
             shell->hinge_side[h][side] = 3 * f + i;
         }
@@ -93,8 +100,17 @@ static void note_hinge(ruga_shell* shell, int f, int vertex, int h, int side) {
 static void set_hinges(ruga_shell* shell, const ruga_mesh* mesh, const ruga_connectivity* connectivity,
                        const ruga_shell_material* material, const double* area) {
     memset(shell->triangle_hinge, -1, (size_t)shell->triangle_count * sizeof *shell->triangle_hinge);
+    const ruga_shell_cut* cut = material->cut;
+    for (int b = 0; cut && b < cut->bend_count; b++) {
+        const ruga_shell_bend* bend = &cut->bend[b];
+        memcpy(shell->hinge[b], bend->vertex, sizeof bend->vertex);
+        set_hinge(shell, mesh, material, b, bend->triangle, area);
+        shell->hinge_rest[b].stiffness *= bend->fraction;
+        note_hinge(shell, bend->triangle[0], bend->vertex[0], b, 0);
+        note_hinge(shell, bend->triangle[1], bend->vertex[1], b, 1);
+    }
     int h = 0;
-    for (int e = 0; e < connectivity->edge_count; e++) {
+    for (int e = 0; !cut && e < connectivity->edge_count; e++) {
         const int* side = connectivity->edge_triangle[e];
         if (side[0] < 0 || side[1] < 0) {
             continue;
@@ -202,7 +218,28 @@ static ruga_status set_rest(ruga_shell* shell, const ruga_mesh* mesh, const ruga
 
 // ---- Pattern and gathers
 
-static ruga_status set_pattern(ruga_shell* shell, const ruga_connectivity* connectivity) {
+// Triangles, hinges, and what others will add.
+static ruga_status set_cut_pattern(ruga_shell* shell, const ruga_shell_cut* cut) {
+    int(*pairs)[2] = NULL;
+    int64_t count = 0;
+    RUGA_TRY(RUGA_NEW(pairs, 3 * (int64_t)shell->triangle_count + shell->hinge_count + cut->pair_count));
+    for (int k = 0; k < 3 * shell->triangle_count; k++, count++) {
+        pairs[count][0] = shell->triangle[k / 3][k % 3];
+        pairs[count][1] = shell->triangle[k / 3][(k + 1) % 3];
+    }
+    for (int h = 0; h < shell->hinge_count; h++) {
+        memcpy(pairs[count++], shell->hinge[h] + 2, sizeof *pairs);
+    }
+    for (int k = 0; k < cut->pair_count; k++) {
+        memcpy(pairs[count++], cut->pair[k], sizeof *pairs);
+    }
+    ruga_status status =
+        ruga_sparse_from_pairs(shell->vertex_count, 3, count, (const int(*)[2])pairs, &shell->pattern);
+    ruga_release(pairs);
+    return status;
+}
+
+static ruga_status set_mesh_pattern(ruga_shell* shell, const ruga_connectivity* connectivity) {
     int(*pairs)[2] = NULL;
     int64_t count = connectivity->edge_count + (int64_t)shell->hinge_count;
     int64_t more = 3 * (int64_t)shell->triangle_count + 9 * (int64_t)shell->hinge_count;
@@ -234,7 +271,12 @@ static ruga_status set_pattern(ruga_shell* shell, const ruga_connectivity* conne
     ruga_status status =
         ruga_sparse_from_pairs(shell->vertex_count, 3, count, (const int(*)[2])pairs, &shell->pattern);
     ruga_release(pairs);
-    RUGA_TRY(status);
+    return status;
+}
+
+static ruga_status set_pattern(ruga_shell* shell, const ruga_connectivity* connectivity,
+                               const ruga_shell_cut* cut) {
+    RUGA_TRY(cut ? set_cut_pattern(shell, cut) : set_mesh_pattern(shell, connectivity));
     RUGA_TRY(RUGA_NEW(shell->block_start, shell->vertex_count + 1));
     shell->block_start[0] = 0;
     for (int v = 0; v < shell->vertex_count; v++) {
@@ -340,10 +382,11 @@ ruga_status ruga_shell_create(const ruga_mesh* mesh, const ruga_connectivity* co
     ruga_status status = RUGA_OK;
     ruga_shell* made = NULL;
     *shell = NULL;
-    RUGA_ASSERT(connectivity->vertex_count == mesh->vertex_count);
-    RUGA_ASSERT(connectivity->triangle_count == mesh->triangle_count);
+    RUGA_ASSERT(material->cut || connectivity->vertex_count == mesh->vertex_count);
+    RUGA_ASSERT(material->cut || connectivity->triangle_count == mesh->triangle_count);
+    RUGA_ASSERT(!material->cut || material->skin.bending == RUGA_BENDING_HINGE);
     RUGA_TRY(ruga_shell_material_check(material));
-    int hinges = count_hinges(connectivity);
+    int hinges = material->cut ? material->cut->bend_count : count_hinges(connectivity);
     bool made_of_patches = material->skin.bending == RUGA_BENDING_KIRCHHOFF_LOVE;
     if (mesh->triangle_count > INT_MAX / (made_of_patches ? RUGA_SHELL_PATCH * RUGA_SHELL_PATCH : 9) ||
         hinges > INT_MAX / 16) {
@@ -360,8 +403,11 @@ ruga_status ruga_shell_create(const ruga_mesh* mesh, const ruga_connectivity* co
     made->has_directors = made_of_patches;
     made->thickness_power = made_of_patches ? 0 : ruga_thickness_power(material->skin.poisson);
     RUGA_TRY_DONE(allocate(made));
+    if (material->cut) {
+        RUGA_TRY_DONE(RUGA_NEW(made->next_hinge, hinges));
+    }
     RUGA_TRY_DONE(set_rest(made, mesh, connectivity, material));
-    RUGA_TRY_DONE(set_pattern(made, connectivity));
+    RUGA_TRY_DONE(set_pattern(made, connectivity, material->cut));
     RUGA_TRY_DONE(set_gathers(made));
     *shell = made;
     made = NULL;
@@ -381,6 +427,7 @@ void ruga_shell_destroy(ruga_shell** shell) {
     ruga_release(s->hinge);
     ruga_release(s->hinge_rest);
     ruga_release(s->hinge_side);
+    ruga_release(s->next_hinge);
     ruga_release(s->rest_area);
     ruga_release(s->thickness);
     ruga_release(s->thickness_gradient);

@@ -16,7 +16,7 @@
 typedef struct ruga_shell ruga_shell;
 
 // RUGA_BAD_INPUT or RUGA_BAD_MESH names the field, or the face and where it is. Nothing of the arguments is
-// kept.
+// kept. connectivity is not looked at where material->cut is given, and bending is by hinges then.
 ruga_status ruga_shell_create(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
                               const ruga_shell_material* material, ruga_shell** shell);
 void ruga_shell_destroy(ruga_shell** shell);

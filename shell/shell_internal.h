@@ -24,6 +24,8 @@ struct ruga_shell {
     int (*triangle)[3];
     ruga_membrane_rest* triangle_rest; // [F]
     int (*triangle_hinge)[3];          // [F] hinge at the edge from corner i to corner i + 1, or -1
+    int (*next_hinge)[2];              // [H] the next one at the same edge of the triangle on that side, or -1; NULL =
+                                       // one at each edge
     int (*hinge)[4];                   // [H] as in ruga_hinge_angle
     ruga_hinge_rest* hinge_rest;       // [H]
     int (*hinge_side)[2];              // [H] 3 triangle + its corner at which the edge begins, on either side

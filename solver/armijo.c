@@ -21,6 +21,7 @@ static ruga_status evaluate(ruga_skin* skin, const double* x, const double* d, d
 static void accept(ruga_skin* skin, double* x, double* gradient) {
     memcpy(x, skin->trial, (size_t)skin->n * sizeof *x);
     memcpy(gradient, skin->trial_gradient, (size_t)skin->n * sizeof *gradient);
+    ruga_skin_follow(skin, x);
 }
 
 // Near the minimum the energy's change drowns in round-off: there the slope decides.

@@ -60,11 +60,13 @@ ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, boo
         return ruga_paper_minimize(skin, x, tolerance, result);
     case RUGA_METHOD_NEWTON:
         RUGA_TRY(ruga_skin_restore(skin, x));
+        ruga_skin_follow(skin, x);
         RUGA_TRY(ruga_newton_minimize(skin, x, tolerance, certify, result));
         break;
     case RUGA_METHOD_DEFAULT:
     case RUGA_METHOD_QUASI_NEWTON:
         RUGA_TRY(ruga_skin_restore(skin, x));
+        ruga_skin_follow(skin, x);
         RUGA_TRY(ruga_quasi_newton_minimize(skin, x, tolerance, certify, result));
         break;
     }

@@ -23,6 +23,42 @@ static bool positive(double value) {
     return value > 0 && isfinite(value);
 }
 
+// What only a free skin in dynamic motion has, and what that has not.
+static ruga_status check_motion(const ruga_model_def* def) {
+    const ruga_skin_def* s = &def->skin;
+    const char* trouble = NULL;
+    if (s->motion != RUGA_SKIN_DYNAMIC) {
+        const ruga_start_def* start = &def->start;
+        bool started = start->fold != 0 || start->cone != 0 || ruga_norm(start->velocity) > 0;
+        return s->model == RUGA_SKIN_SPRINGS
+                   ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
+               : started ? ruga_fail(RUGA_BAD_INPUT,
+                                     "start: needs skin.motion: dynamic; a static skin starts at rest")
+                         : RUGA_OK;
+    }
+    if (def->has_interior) {
+        trouble = "needs interior: none";
+    } else if (s->model == RUGA_SKIN_VOLUME) {
+        trouble = "goes with model: shell or springs";
+    } else if (s->bending != RUGA_BENDING_HINGE) {
+        trouble = "knows bending: hinge only";
+    } else if (s->vertex_thickness || s->vertex_young || s->vertex_growth || s->growth[0] != 1 ||
+               s->growth[1] != 1) {
+        trouble = "knows one thickness and modulus and no growth yet";
+    }
+    if (trouble) {
+        return ruga_fail(RUGA_BAD_INPUT, "skin.motion: dynamic %s", trouble);
+    }
+    RUGA_TRY(require(positive(s->density), "skin.density", s->density, "above 0 where the skin moves"));
+    RUGA_TRY(require(s->damping >= 0 && isfinite(s->damping), "skin.damping", s->damping, "0 or above"));
+    RUGA_TRY(require(s->drag >= 0 && isfinite(s->drag), "skin.drag", s->drag, "0 or above"));
+    RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
+    RUGA_TRY(require(isfinite(ruga_norm(def->start.velocity)), "start.velocity",
+                     ruga_norm(def->start.velocity), "finite"));
+    return require(def->start.cone >= 0 && def->start.cone < 2 * RUGA_PI, "start.cone", def->start.cone,
+                   "between 0 and a whole turn");
+}
+
 static ruga_status check_material(const ruga_model_def* def) {
     const ruga_skin_def* s = &def->skin;
     const ruga_interior_def* q = &def->interior;
@@ -34,13 +70,15 @@ static ruga_status check_material(const ruga_model_def* def) {
     for (int i = 0; i < 2 && !s->vertex_growth; i++) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
     }
-    RUGA_TRY(require(s->motion == RUGA_SKIN_STATIC || positive(s->relaxation), "skin.relaxation", s->relaxation,
-                     "above 0"));
+    RUGA_TRY(check_motion(def));
+    RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation",
+                     s->relaxation, "above 0"));
     if (!def->has_interior) {
         return RUGA_OK;
     }
     RUGA_TRY(require(positive(q->young), "interior.young", q->young, "above 0"));
-    RUGA_TRY(require(q->poisson > -1 && q->poisson < 0.5, "interior.poisson", q->poisson, "between -1 and 0.5"));
+    RUGA_TRY(
+        require(q->poisson > -1 && q->poisson < 0.5, "interior.poisson", q->poisson, "between -1 and 0.5"));
     RUGA_TRY(require(q->damping >= 0 && isfinite(q->damping), "interior.damping", q->damping, "0 or above"));
     bool massive = q->motion != RUGA_INTERIOR_DYNAMIC || q->density > 0;
     return require(massive && q->density >= 0 && isfinite(q->density), "interior.density", q->density,
@@ -57,8 +95,8 @@ static ruga_status check_numbers(const ruga_model_def* def) {
     if (!def->has_interior) {
         return RUGA_OK;
     }
-    RUGA_TRY(require(def->lattice.cells >= 1 && def->lattice.cells <= 1000, "lattice.cells", def->lattice.cells,
-                     "between 1 and 1000"));
+    RUGA_TRY(require(def->lattice.cells >= 1 && def->lattice.cells <= 1000, "lattice.cells",
+                     def->lattice.cells, "between 1 and 1000"));
     RUGA_TRY(require(def->lattice.degree == 1 || def->lattice.degree == 2, "lattice.degree",
                      def->lattice.degree, "1 or 2"));
     RUGA_TRY(require(def->lattice.depth >= 0 && isfinite(def->lattice.depth), "lattice.depth",
@@ -67,13 +105,39 @@ static ruga_status check_numbers(const ruga_model_def* def) {
                      "between 0 and the number of vertices"));
     RUGA_TRY(require(c->radius >= 0 && isfinite(c->radius), "coupling.radius", c->radius, "0 or above"));
     RUGA_TRY(require(c->sigma >= 0 && isfinite(c->sigma), "coupling.sigma", c->sigma, "0 or above"));
-    RUGA_TRY(require(def->interior.motion != RUGA_INTERIOR_PRESCRIBED || def->keyframe_count > 0,
+    RUGA_TRY(require(def->interior.motion != RUGA_INTERIOR_PRESCRIBED || def->keyframe_count > 0 ||
+                         def->follow.sample_count > 0,
                      "the number of prescribed keyframes", def->keyframe_count, "1 or above"));
+    RUGA_TRY(require(def->follow.sample_count == 0 || def->keyframe_count == 0,
+                     "the number of prescribed keyframes", def->keyframe_count,
+                     "0 where a surface is followed"));
     for (int k = 1; k < def->keyframe_count; k++) {
         RUGA_TRY(require(def->keyframes[k].time > def->keyframes[k - 1].time, "prescribed time",
                          def->keyframes[k].time, "above that of the keyframe before"));
     }
     return RUGA_OK;
+}
+
+// What a skin with creases cannot do.
+static ruga_status check_creases(const ruga_model_def* def) {
+    const ruga_skin_def* skin = &def->skin;
+    const char* trouble = NULL;
+    if (def->crease_count == 0) {
+        return RUGA_OK;
+    }
+    if (skin->model == RUGA_SKIN_VOLUME) {
+        trouble = "skin.model: volume has no shell to crease";
+    } else if (skin->bending != RUGA_BENDING_HINGE) {
+        trouble = "skin.bending: kirchhoff-love has one rotation for a whole edge, which creases divide; "
+                  "write hinge";
+    } else if (def->solver.method == RUGA_METHOD_PAPER) {
+        trouble = "solver.method: paper is the published method, which knows no creases";
+    } else if (def->has_interior && def->coupling.kind == RUGA_COUPLING_NONE && !def->coupling.foundation) {
+        trouble = "with coupling.kind: none and no foundation the skin goes where the interior takes it";
+    } else if (skin->vertex_thickness || skin->vertex_young || skin->vertex_growth) {
+        trouble = "a skin that varies is not available yet together with creases";
+    }
+    return trouble ? ruga_fail(RUGA_BAD_INPUT, "creases: %s", trouble) : RUGA_OK;
 }
 
 static ruga_status check_mesh(const ruga_model* model) {
@@ -88,7 +152,8 @@ static ruga_status check_mesh(const ruga_model* model) {
 // ---- copies --------------------------------------------------------------------------------------------
 
 static ruga_status copy_handles(const ruga_model_def* def, ruga_model* model) {
-    RUGA_TRY(RUGA_NEW_ZERO(model->handles, def->handle_count));
+    RUGA_TRY(RUGA_NEW_ZERO(model->handles, def->handle_count + 1));
+    model->handles[def->handle_count] = ruga_default_handle_def(); // of hold_in_space
     model->handle_count = def->handle_count;
     for (int i = 0; i < def->handle_count; i++) {
         ruga_handle_def* handle = &model->handles[i];
@@ -124,6 +189,7 @@ static ruga_status copy_def(const ruga_model_def* def, ruga_model* model) {
     model->step = def->step;
     model->frames = def->frames;
     memcpy(model->gravity, def->gravity, sizeof model->gravity);
+    model->start = def->start;
     if (model->solver.method == RUGA_METHOD_DEFAULT) {
         model->solver.method = RUGA_METHOD_QUASI_NEWTON;
     }
@@ -138,6 +204,26 @@ static ruga_status copy_def(const ruga_model_def* def, ruga_model* model) {
 
 // ---- building ------------------------------------------------------------------------------------------
 
+// Cuts the mesh: the sheet is the creases' own from now on, and the mesh that of nodes and pieces.
+static ruga_status build_creases(const ruga_model_def* def, ruga_model* model) {
+    ruga_mesh nodes = {0};
+    RUGA_TRY(ruga_progress("cutting along creases", 0));
+    RUGA_TRY(ruga_creases_create(def->crease_count, def->creases, &model->mesh, &model->connectivity,
+                                 &model->creases));
+    RUGA_TRY(ruga_creases_nodes(model->creases, &nodes));
+    ruga_mesh_clear(&model->mesh);
+    ruga_connectivity_clear(&model->connectivity);
+    model->mesh = nodes;
+    model->sheet = &model->creases->raster.mesh;
+    RUGA_TRY(ruga_connectivity_create(model->sheet, &model->connectivity));
+    ruga_release(model->vertex_area);
+    RUGA_TRY(RUGA_NEW(model->vertex_area, nodes.vertex_count));
+    memcpy(model->vertex_area, model->creases->area, (size_t)nodes.vertex_count * sizeof *model->vertex_area);
+    const ruga_shell_material material = {.skin = model->skin};
+    ruga_creases_set_bending(model->creases, &material);
+    return RUGA_OK;
+}
+
 static ruga_status build_mesh(ruga_model* model) {
     double min[3], max[3];
     RUGA_TRY(ruga_progress("checking the mesh", 0));
@@ -149,18 +235,124 @@ static ruga_status build_mesh(ruga_model* model) {
     }
     model->extent = ruga_distance(min, max);
     model->mean_edge = ruga_mesh_mean_edge(&model->mesh);
+    model->sheet = &model->mesh;
     RUGA_TRY(RUGA_NEW(model->vertex_area, model->mesh.vertex_count));
     ruga_mesh_vertex_areas(&model->mesh, model->vertex_area);
     return RUGA_OK;
 }
 
+static void hold_node(ruga_model* model, int node, int h) {
+    for (int axis = 0; axis < 3; axis++) {
+        int* holder = &model->skin_handle[3 * (size_t)node + (size_t)axis];
+        if (model->handles[h].axes[axis] && *holder < 0) {
+            *holder = h;
+            model->any_skin_held = true;
+        }
+    }
+}
+
+// Whether a place of a piece is in the handle's region: a vertex that it selects, or a point between two of
+// these, or one that it contains.
+static bool place_is_in(const ruga_model* model, const ruga_cut_piece* piece, int place, int h,
+                        const bool* in) {
+    const ruga_cut* cut = &model->creases->cut;
+    int i = place / 2;
+    if (place % 2 == 0) {
+        return in[cut->source[piece->node[i]]];
+    }
+    const double* x = cut->material.position + 3 * (size_t)ruga_cut_vertex(cut, piece, place);
+    return (in[cut->source[piece->node[i]]] && in[cut->source[piece->node[(i + 1) % 3]]]) ||
+           ruga_region_contains_within(&model->handles[h].region, x, ruga_region_slack(model->sheet));
+}
+
+// A copy of a selected vertex is held where its piece has a vertex in the region itself; a piece that lies in
+// the region as a whole is held as a whole. So a crease across the rim of a region is held from both sides,
+// and one that bounds a region can turn.
+static void hold_pieces(ruga_model* model, int h, const bool* in) {
+    const ruga_cut* cut = &model->creases->cut;
+    for (int p = 0; p < cut->piece_count; p++) {
+        const ruga_cut_piece* piece = &cut->piece[p];
+        bool any = false, all = true;
+        for (int k = 0; k < piece->polygon.count; k++) {
+            bool inside = place_is_in(model, piece, piece->polygon.place[k], h, in);
+            any = any || (inside && piece->polygon.place[k] % 2 == 0);
+            all = all && inside;
+        }
+        for (int i = 0; i < 3; i++) {
+            if (all || (any && in[cut->source[piece->node[i]]])) {
+                hold_node(model, piece->node[i], h);
+            }
+        }
+    }
+}
+
+static void hold_selected(ruga_model* model, int h, int count, const int* selected, bool* in) {
+    if (!model->creases) {
+        for (int k = 0; k < count; k++) {
+            hold_node(model, selected[k], h);
+        }
+        return;
+    }
+    memset(in, 0, (size_t)model->sheet->vertex_count * sizeof *in);
+    for (int k = 0; k < count; k++) {
+        in[selected[k]] = true;
+    }
+    hold_pieces(model, h, in);
+}
+
+// The uncut triangle nearest to the middle; any where all are cut.
+static int middle_triangle(const ruga_model* model) {
+    double nearest = INFINITY;
+    int best = 0;
+    for (int p = 0; p < model->mesh.triangle_count; p++) {
+        const int* t = model->mesh.triangle + 3 * (size_t)p;
+        double off[3] = {-model->center[0], -model->center[1], -model->center[2]};
+        for (int i = 0; i < 3; i++) {
+            ruga_add_scaled(1.0 / 3, model->mesh.position + 3 * (size_t)t[i], off);
+        }
+        double far = ruga_norm(off) + (model->creases->cut.piece[p].fraction < 1 ? model->extent : 0);
+        if (far < nearest) {
+            nearest = far;
+            best = p;
+        }
+    }
+    return best;
+}
+
+static int largest_component(const double v[3]) {
+    return fabs(v[0]) >= fabs(v[1]) && fabs(v[0]) >= fabs(v[2]) ? 0 : fabs(v[1]) >= fabs(v[2]) ? 1 : 2;
+}
+
+// A folding sheet that nothing holds would drift and turn: six components of one triangle are held, which
+// takes no force. Its first corner; of the second what is across the edge between them; of the third the
+// height.
+static void hold_in_space(ruga_model* model) {
+    const int* t = model->mesh.triangle + 3 * (size_t)middle_triangle(model);
+    const double* x[3];
+    double edge[3], normal[3];
+    for (int i = 0; i < 3; i++) {
+        x[i] = model->mesh.position + 3 * (size_t)t[i];
+    }
+    ruga_subtract(x[1], x[0], edge);
+    ruga_triangle_normal(x[0], x[1], x[2], normal);
+    int along = largest_component(edge), up = largest_component(normal);
+    for (int axis = 0; axis < 3; axis++) {
+        model->skin_handle[3 * (size_t)t[0] + (size_t)axis] = model->handle_count;
+        model->skin_handle[3 * (size_t)t[1] + (size_t)axis] = axis == along ? -1 : model->handle_count;
+        model->skin_handle[3 * (size_t)t[2] + (size_t)axis] = axis == up ? model->handle_count : -1;
+    }
+    model->any_skin_held = true;
+}
+
 // Which handle holds which component of the skin; the first one wins.
 static ruga_status build_skin_holds(ruga_model* model) {
     ruga_status status = RUGA_OK;
-    int vertices = model->mesh.vertex_count, *selected = NULL;
-    RUGA_TRY(RUGA_NEW(model->skin_handle, 3 * (size_t)vertices));
-    memset(model->skin_handle, -1, 3 * (size_t)vertices * sizeof *model->skin_handle);
-    RUGA_TRY(RUGA_NEW(selected, vertices));
+    int nodes = model->mesh.vertex_count, *selected = NULL;
+    bool* in = NULL;
+    RUGA_TRY(RUGA_NEW(model->skin_handle, 3 * (size_t)nodes));
+    memset(model->skin_handle, -1, 3 * (size_t)nodes * sizeof *model->skin_handle);
+    RUGA_TRY_DONE(RUGA_NEW(selected, model->sheet->vertex_count));
+    RUGA_TRY_DONE(RUGA_NEW(in, model->sheet->vertex_count));
     for (int h = 0; h < model->handle_count; h++) {
         const ruga_handle_def* handle = &model->handles[h];
         int count;
@@ -168,23 +360,35 @@ static ruga_status build_skin_holds(ruga_model* model) {
         if (!holds || (handle->hold == RUGA_HOLD_INTERIOR && model->has_interior)) {
             continue;
         }
-        RUGA_TRY_DONE(ruga_region_vertices(&handle->region, &model->mesh, &count, selected));
+        RUGA_TRY_DONE(ruga_region_vertices(&handle->region, model->sheet, &count, selected));
         if (count == 0 && (handle->hold == RUGA_HOLD_SKIN || !model->has_interior)) {
             status = ruga_fail(RUGA_BAD_INPUT, "handles.%d: the region selects no vertex of the skin", h);
             goto done;
         }
-        for (int k = 0; k < count; k++) {
-            for (int axis = 0; axis < 3; axis++) {
-                int* holder = &model->skin_handle[3 * (size_t)selected[k] + (size_t)axis];
-                if (handle->axes[axis] && *holder < 0) {
-                    *holder = h;
-                    model->any_skin_held = true;
-                }
-            }
-        }
+        hold_selected(model, h, count, selected, in);
+    }
+    if (model->creases && !model->has_interior && !model->any_skin_held &&
+        model->skin.motion != RUGA_SKIN_DYNAMIC) {
+        hold_in_space(model);
     }
 done:
     ruga_release(selected);
+    ruga_release(in);
+    return status;
+}
+
+static ruga_status build_loads(ruga_model* model) {
+    const ruga_creases* creases = model->creases;
+    if (!creases) {
+        return ruga_loads_create(&model->mesh, &model->connectivity, model->handle_count, model->handles,
+                                 &model->loads);
+    }
+    ruga_load_place(*place)[3] = NULL;
+    RUGA_TRY(ruga_creases_places(creases, &place));
+    ruga_status status =
+        ruga_loads_create_placed(&creases->cut.material, &creases->shown, (const ruga_load_place(*)[3])place,
+                                 model->handle_count, model->handles, &model->loads);
+    ruga_release(place);
     return status;
 }
 
@@ -195,14 +399,15 @@ static ruga_status build_clusters(ruga_model* model) {
     c->radius = c->radius > 0 ? c->radius : radius;
     c->sigma = c->sigma > 0 ? c->sigma : sigma;
     RUGA_TRY(ruga_progress("placing clusters", 0));
-    RUGA_TRY(ruga_clusters_create_local(&model->mesh, &model->connectivity, c->radius, c->sigma,
+    RUGA_TRY(ruga_clusters_create_local(model->sheet, &model->connectivity, c->radius, c->sigma,
                                         model->variation.scale, c->count, model->solver.seed,
                                         &model->clusters));
     c->count = model->clusters.count;
     if (c->kind == RUGA_COUPLING_SPECTRAL) {
         ruga_clusters_clear(&model->clusters);
         RUGA_TRY(ruga_progress("finding Laplacian eigenvectors", 0));
-        RUGA_TRY(ruga_clusters_create_spectral(&model->mesh, &model->connectivity, c->count, &model->clusters));
+        RUGA_TRY(
+            ruga_clusters_create_spectral(model->sheet, &model->connectivity, c->count, &model->clusters));
     }
     return RUGA_OK;
 }
@@ -235,10 +440,42 @@ done:
     return status;
 }
 
+// On the pieces: springs by the area of material at each node, the rest by its part of each triangle.
+static ruga_status build_pieces_foundation(ruga_model* model, double modulus) {
+    ruga_status status = RUGA_OK;
+    const ruga_creases* creases = model->creases;
+    const double* local = model->variation.wavelength;
+    int nodes = model->mesh.vertex_count, pieces = model->mesh.triangle_count;
+    ruga_connectivity edges = {0};
+    double *a = NULL, *b = NULL;
+    RUGA_TRY_DONE(RUGA_NEW(a, nodes));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(b, pieces));
+    for (int n = 0; n < nodes; n++) {
+        a[n] = foundation_a(modulus, local ? local[n] : model->wavelength);
+    }
+    for (int p = 0; p < pieces; p++) {
+        for (int i = 0; i < 3; i++) {
+            double wavelength = local ? local[model->mesh.triangle[3 * p + i]] : model->wavelength;
+            b[p] += creases->cut.piece[p].fraction * foundation_b(modulus, wavelength) / 3;
+        }
+    }
+    RUGA_TRY_DONE(ruga_creases_edges(&model->mesh, &edges));
+    RUGA_TRY_DONE(
+        ruga_foundation_create_pieces(&model->mesh, &edges, creases->area, a, b, &model->foundation));
+done:
+    ruga_connectivity_clear(&edges);
+    ruga_release(a);
+    ruga_release(b);
+    return status;
+}
+
 static ruga_status build_foundation(ruga_model* model) {
     double nu = model->interior.poisson, modulus = model->interior.young / (1 - nu * nu);
     model->foundation_a = foundation_a(modulus, model->wavelength);
     model->foundation_b = foundation_b(modulus, model->wavelength);
+    if (model->creases) {
+        return build_pieces_foundation(model, modulus);
+    }
     if (model->variation.wavelength) {
         return build_local_foundation(model, modulus);
     }
@@ -270,12 +507,24 @@ static ruga_status build_coupling(ruga_model* model) {
     return RUGA_OK;
 }
 
-static ruga_status build_interior(ruga_model* model) {
+static ruga_status build_interior(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(ruga_progress("building the lattice", 0));
-    RUGA_TRY(ruga_lattice_create(&model->mesh, &model->connectivity, &model->lattice_def, &model->lattice));
+    RUGA_TRY(ruga_lattice_create(model->sheet, &model->connectivity, &model->lattice_def, &model->lattice));
     if (!ruga_model_is_prescribed(model)) {
-        RUGA_TRY(ruga_rows_create(&model->lattice, &model->mesh, model->handle_count, model->handles,
+        RUGA_TRY(ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles,
                                   &model->rows));
+    }
+    if (model->creases) {
+        RUGA_TRY(ruga_lattice_copy_vertices(&model->lattice, model->mesh.vertex_count,
+                                            model->creases->cut.source));
+    }
+    if (ruga_model_is_prescribed(model) && def->follow.sample_count > 0) {
+        if (model->creases) {
+            return ruga_fail(RUGA_BAD_INPUT,
+                             "follow: a mesh that is cut by creases cannot follow a moving surface");
+        }
+        RUGA_TRY(ruga_follow_create(&model->lattice, &model->mesh, model->vertex_area, &def->follow,
+                                    &model->follow));
     }
     return build_coupling(model);
 }
@@ -288,17 +537,19 @@ static ruga_status build_dense(ruga_model* model, double depth) {
                           .depth = depth > 0 ? depth : 2 * model->wavelength};
     double cells = model->wavelength / (ruga_dense_side(&model->mesh) / def.cells);
     if (cells < 4 && !model->solver.allow_coarse) {
-        return ruga_fail(RUGA_BAD_INPUT,
-                         "the volume has %.2g cells per wrinkle wavelength (%.4g m), at least 4 are needed and 16 are "
-                         "good: give more lattice.cells, or set solver.allow_coarse",
-                         cells, model->wavelength);
+        return ruga_fail(
+            RUGA_BAD_INPUT,
+            "the volume has %.2g cells per wrinkle wavelength (%.4g m), at least 4 are needed and 16 are "
+            "good: give more lattice.cells, or set solver.allow_coarse",
+            cells, model->wavelength);
     }
     RUGA_TRY(ruga_progress("building the volume", 0));
     return ruga_dense_create(&model->mesh, &def, &model->dense);
 }
 
 double ruga_model_force_floor(const ruga_model* model) {
-    // A strain's round-off is that of positions over edges, so a nodal force has that of E h times the extent.
+    // A strain's round-off is that of positions over edges, so a nodal force has that of E h times the
+    // extent.
     double stiffness = model->skin.young * model->skin.thickness;
     double round_off = 0.25 * 0x1p-52 * model->extent * sqrt(3.0 * model->mesh.vertex_count);
     return stiffness * fmax(1e-8 * model->mean_edge, round_off / model->solver.tolerance);
@@ -316,23 +567,30 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
     RUGA_TRY(check_material(def));
     RUGA_TRY(check_numbers(def));
     RUGA_TRY(ruga_dense_check(def));
+    RUGA_TRY(check_creases(def));
     RUGA_TRY(RUGA_NEW_ZERO(model, 1));
     RUGA_TRY_DONE(copy_def(def, model));
     if (model->skin.model == RUGA_SKIN_VOLUME) {
         model->lattice_def.depth = 0; // the lattice only carries the surface along: one layer will do
     }
     RUGA_TRY_DONE(build_mesh(model));
+    if (def->crease_count > 0) {
+        RUGA_TRY_DONE(build_creases(def, model));
+    }
     RUGA_TRY_DONE(ruga_variation_create(&def->skin, model));
     RUGA_TRY_DONE(build_skin_holds(model));
-    RUGA_TRY_DONE(ruga_loads_create(&model->mesh, &model->connectivity, model->handle_count, model->handles,
-                                    &model->loads));
+    RUGA_TRY_DONE(build_loads(model));
     if (model->has_interior) {
-        RUGA_TRY_DONE(build_interior(model));
+        RUGA_TRY_DONE(build_interior(def, model));
         if (model->skin.model == RUGA_SKIN_VOLUME) {
             RUGA_TRY_DONE(build_dense(model, def->lattice.depth));
         }
     } else {
-        model->solves_skin = true;
+        model->solves_skin = model->skin.motion != RUGA_SKIN_DYNAMIC;
+    }
+    model->seam = model->clusters.count;
+    if (model->creases) {
+        RUGA_TRY_DONE(ruga_creases_tie(model->creases, &model->clusters));
     }
 done:
     if (status != RUGA_OK) {
@@ -361,15 +619,21 @@ void ruga_model_destroy(ruga_model** model_pointer) {
     ruga_clusters_clear(&model->clusters);
     ruga_rows_clear(&model->rows);
     ruga_dense_clear(&model->dense);
+    ruga_follow_clear(&model->follow);
     ruga_lattice_clear(&model->lattice);
     ruga_connectivity_clear(&model->connectivity);
     ruga_mesh_clear(&model->mesh);
+    ruga_creases_destroy(&model->creases);
     ruga_release(model);
     *model_pointer = NULL;
 }
 
 int ruga_model_vertex_count(const ruga_model* model) {
-    return model->mesh.vertex_count;
+    return ruga_model_shown(model)->vertex_count;
+}
+
+const ruga_mesh* ruga_model_shown(const ruga_model* model) {
+    return model->creases ? &model->creases->cut.material : &model->mesh;
 }
 
 double ruga_model_wavelength(const ruga_model* model) {

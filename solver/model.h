@@ -11,7 +11,9 @@
 #include "lattice/lattice.h"
 #include "mesh/connectivity.h"
 #include "mesh/mesh.h"
+#include "solver/creases.h"
 #include "solver/dense.h"
+#include "solver/follow.h"
 #include "ruga/ruga.h"
 
 enum { RUGA_MODEL_COOKIE = 0x52756761 };
@@ -26,8 +28,10 @@ typedef struct ruga_variation {
 } ruga_variation;
 
 struct ruga_model {
-    ruga_mesh mesh;
-    ruga_connectivity connectivity;
+    ruga_mesh mesh;         // what moves: with creases the nodes, and a triangle for each piece
+    ruga_creases* creases;  // NULL = none
+    const ruga_mesh* sheet; // what regions, lattice and clusters see: the mesh, before it was cut
+    ruga_connectivity connectivity; // of the sheet
     double center[3]; // of the mesh's bounding box
     double mean_edge;
     double extent;    // diagonal of the bounding box, m
@@ -42,8 +46,10 @@ struct ruga_model {
     double step;
     int frames;
     double gravity[3];
+    ruga_start_def start;
     int keyframe_count;
     ruga_keyframe_def* keyframes;
+    ruga_follow follow; // count 0 where the interior follows no surface
     int handle_count;
     ruga_handle_def* handles; // with copies of names and vertex lists
     ruga_loads* loads;
@@ -57,7 +63,8 @@ struct ruga_model {
 
     ruga_lattice lattice;
     ruga_rows rows;             // exact holds of the interior
-    ruga_clusters clusters;     // count 0 where there are none
+    ruga_clusters clusters;     // count 0 where there are none; with creases the rows of the sewing come last
+    int seam;                   // the first of these; clusters.count where there are none
     ruga_foundation foundation; // vertex_count 0 where there is none
     double* vertex_area;        // [V] m^2, rest
     int* skin_handle;           // [V][3] the handle that holds this component of the skin; -1 = free
@@ -76,6 +83,9 @@ void ruga_variation_clear(ruga_variation* variation);
 // The least reference force, N: 1e-8 E h times the mean edge, and never so small that the tolerance would be
 // below the round-off of the gradient.
 double ruga_model_force_floor(const ruga_model* model);
+
+// The mesh that is shown: with creases the material, embedded nodes included.
+const ruga_mesh* ruga_model_shown(const ruga_model* model);
 
 bool ruga_model_is_prescribed(const ruga_model* model);
 

@@ -86,6 +86,7 @@ ruga_status ruga_negative_curvature_step(ruga_skin* skin, double* x, ruga_skin_t
     }
     if (*moved) {
         memcpy(x, image, (size_t)skin->n * sizeof *x);
+        ruga_skin_follow(skin, x);
     }
     return RUGA_OK;
 }

@@ -77,6 +77,35 @@ static ruga_status transpose_clusters(const ruga_clusters* clusters, int vertice
     return RUGA_OK;
 }
 
+// What is held may leave rows of the sewing that say the same of the free nodes.
+static ruga_status find_dependent_seams(ruga_skin* skin, int axis) {
+    ruga_status status = RUGA_OK;
+    const ruga_sewing* s = &skin->model->creases->sewing;
+    bool* dependent = NULL;
+    double *free = NULL, *value = NULL;
+    ruga_seam_factor factor = {0};
+    RUGA_TRY_DONE(RUGA_NEW(dependent, s->row_count));
+    RUGA_TRY_DONE(RUGA_NEW(free, s->node_count));
+    RUGA_TRY_DONE(RUGA_NEW(value, s->pattern.start[s->row_count]));
+    for (int i = 0; i < s->node_count; i++) {
+        free[i] = held(skin, 3 * i + axis) ? 0 : 1;
+    }
+    ruga_sewing_matrix(s, free, value);
+    ruga_sparse matrix = s->pattern;
+    matrix.value = value;
+    RUGA_TRY_DONE(ruga_seam_factor_create(&matrix, 1e-12, dependent, &factor));
+    for (int r = 0; r < s->row_count; r++) {
+        bool* none = &skin->row_void[3 * (skin->model->seam + r) + axis];
+        *none = *none || dependent[r];
+    }
+done:
+    ruga_seam_factor_clear(&factor);
+    ruga_release(dependent);
+    ruga_release(free);
+    ruga_release(value);
+    return status;
+}
+
 // A row without a free component says nothing. Where the skin alone is held, away from the interior, a row with less
 // than a quarter of its weight free (in the root of the sum of squares) would move these few by many times what it
 // corrects. Both are left out; the multiplier gets a unit diagonal, negative so that the inertia stays (n, m, 0).
@@ -93,7 +122,11 @@ static ruga_status find_void_rows(ruga_skin* skin) {
             free += handle < 0 ? weight : 0;
             torn = torn || (handle >= 0 && skin->model->handles[handle].hold == RUGA_HOLD_SKIN);
         }
+        torn = torn && r < 3 * skin->model->seam;
         skin->row_void[r] = free <= (torn ? 0.0625 * all : 0);
+    }
+    for (int axis = 0; axis < 3 && skin->model->creases && skin->model->any_skin_held; axis++) {
+        RUGA_TRY(find_dependent_seams(skin, axis));
     }
     return RUGA_OK;
 }
@@ -294,6 +327,11 @@ static ruga_status create_shell(ruga_skin* skin) {
                                     .young = model->variation.triangle_young,
                                     .growth = model->variation.triangle_growth,
                                     .held = held_triangle};
+    ruga_shell_cut cut;
+    if (model->creases) {
+        cut = ruga_creases_shell(model->creases);
+        material.cut = &cut;
+    }
     ruga_status status = ruga_shell_create(&model->mesh, &model->connectivity, &material, &skin->shell);
     ruga_release(held_triangle);
     return status;
@@ -309,6 +347,9 @@ ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** out) {
     skin->n = 3 * model->mesh.vertex_count;
     skin->m = 3 * model->clusters.count;
     RUGA_TRY_DONE(create_shell(skin));
+    if (model->creases) {
+        RUGA_TRY_DONE(ruga_hinges_create(model->creases, ruga_shell_pattern(skin->shell), &skin->hinges));
+    }
     const ruga_directors* directors = ruga_shell_directors(skin->shell);
     skin->size = skin->n + skin->m + (directors ? directors->hinge_count : 0);
     RUGA_TRY_DONE(transpose_clusters(&model->clusters, skin->n / 3, &t));
@@ -338,6 +379,7 @@ void ruga_skin_destroy(ruga_skin** skin_pointer) {
         return;
     }
     ruga_shell_destroy(&skin->shell);
+    ruga_hinges_destroy(&skin->hinges);
     ruga_sparse_clear(&skin->kkt);
     ruga_factor_destroy(&skin->factor);
     for (int axis = 0; axis < 3; axis++) {
@@ -389,6 +431,10 @@ ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* 
     RUGA_TRY(ruga_shell_energy(skin->shell, x, 0, &shell, gradient, NULL));
     *terms = (ruga_skin_terms){.membrane = shell.membrane, .bending = shell.bending};
     double force_square = shell.force_square, part = 0;
+    if (skin->hinges) {
+        ruga_hinges_evaluate(skin->hinges, x, &terms->hinge, &part, gradient, &force_square);
+        terms->bending += part;
+    }
     if (model->foundation.vertex_count) {
         for (int i = 0; i < skin->n; i++) {
             skin->displacement[i] = x[i] - skin->embedded[i];
@@ -403,9 +449,38 @@ ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* 
     }
     double proximal = skin->proximal > 0 ? add_proximal(skin, x, gradient) : 0;
     terms->total = terms->membrane + terms->bending + terms->foundation + terms->external + proximal;
+    terms->total += terms->hinge;
     terms->force_reference = fmax(sqrt(force_square), ruga_model_force_floor(model));
     skin->work.energies++;
     skin->work.seconds_energy += ruga_clock() - begin;
+    return RUGA_OK;
+}
+
+void ruga_skin_follow(ruga_skin* skin, const double* x) {
+    if (skin->hinges) {
+        ruga_hinges_follow(skin->hinges, x);
+    }
+}
+
+ruga_status ruga_skin_handle_forces(ruga_skin* skin, const double* x, double* force) {
+    const ruga_model* model = skin->model;
+    ruga_skin_terms terms;
+    double *gradient = skin->trial_gradient, *projected = skin->trial;
+    memset(force, 0, 3 * (size_t)model->handle_count * sizeof *force);
+    if (!model->any_skin_held || !model->solves_skin) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(ruga_skin_energy(skin, x, &terms, gradient));
+    RUGA_TRY(ruga_skin_project(skin, gradient, projected)); // for the multiplier
+    if (skin->m > 0) {
+        ruga_clusters_apply_transpose(&model->clusters, skin->multiplier, gradient);
+    }
+    for (int i = 0; i < skin->n; i++) {
+        int h = model->skin_handle[i];
+        if (h >= 0 && h < model->handle_count) {
+            force[3 * h + i % 3] += gradient[i];
+        }
+    }
     return RUGA_OK;
 }
 
@@ -469,6 +544,9 @@ ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
     RUGA_TRY(ruga_shell_energy(skin->shell, x, clamp, &shell, NULL, skin->stiffness));
     if (skin->coupling) {
         ruga_shell_coupling(skin->shell, skin->coupling);
+    }
+    if (skin->hinges) {
+        ruga_hinges_add_hessian(skin->hinges, x, clamp, skin->stiffness);
     }
     if (model->foundation.vertex_count) {
         ruga_foundation_add_hessian(&model->foundation, skin->foundation_slot, skin->stiffness);
@@ -627,6 +705,9 @@ double ruga_skin_constraint_residual(ruga_skin* skin, const double* x) {
     ruga_clusters_apply(&skin->model->clusters, x, hx);
     ruga_clusters_apply(&skin->model->clusters, skin->embedded, hb);
     double scale = sqrt(ruga_dot_product(skin->m, hb, hb));
+    if (skin->model->seam == 0) { // nothing but gaps, which should be nothing: against an edge
+        scale = skin->model->mean_edge;
+    }
     for (int r = 0; r < skin->m; r++) {
         hx[r] -= hb[r];
     }

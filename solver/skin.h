@@ -11,18 +11,20 @@
 
 #include "core/sparse.h"
 #include "shell/shell.h"
+#include "solver/hinges.h"
 #include "solver/linear.h"
 #include "solver/model.h"
 #include "solver/work.h"
 
 typedef struct ruga_skin_terms {
-    double total, membrane, bending, foundation, external; // J
+    double total, membrane, bending, hinge, foundation, external; // J; bending with that of auxiliary chords
     double force_reference;                               // f_ref, N
 } ruga_skin_terms;
 
 typedef struct ruga_skin {
     const ruga_model* model;
     ruga_shell* shell;
+    ruga_hinges* hinges; // of creases, NULL = none
     int n, m, size; // 3 V, 3 clusters, n + m + directors
 
     ruga_sparse kkt;        // lower triangle of the matrix, of `size`
@@ -64,6 +66,11 @@ void ruga_skin_destroy(ruga_skin** skin);
 // Energy at x; the full gradient [n] where not NULL (held components are not zeroed).
 ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* terms, double* gradient);
 
+// Tells the hinges of creases that x is the state now: what they follow.
+void ruga_skin_follow(ruga_skin* skin, const double* x);
+// force [handles][3] N, on the skin: the reactions that gradient and constraints leave at what each handle holds.
+ruga_status ruga_skin_handle_forces(ruga_skin* skin, const double* x, double* force);
+
 // Assembles K at x (clamp as in shell.h) into stiffness and kkt; the factor stays as it is.
 ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp);
 // Assembles, adds shift times vertex area to the diagonal, and factorises. See factor_right.
@@ -72,10 +79,8 @@ ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, dou
 ruga_status ruga_skin_refactor(ruga_skin* skin, double shift);
 // Tries clamp 0.5, then 1, then shifts, until the inertia is right.
 ruga_status ruga_skin_factor_convex(ruga_skin* skin, const double* x);
-
-// A stiffness per area, N/m^3, that is small against that of a wrinkle: the unit of diagonal shifts.
-double ruga_skin_shift_unit(const ruga_model* model);
-// Raises the shift of the K last assembled (exact, of wrong inertia) until the inertia is right.
+double ruga_skin_shift_unit(const ruga_model* model); // N/m^3, small against a wrinkle's: the unit of shifts
+// Raises the shift of the K last assembled (exact, of wrong inertia) until it is.
 ruga_status ruga_skin_shift_until_right(ruga_skin* skin);
 
 // d = the first n of [K H^T; H 0]^-1 [r; 0], with held components of r taken as 0: H d = 0.
@@ -115,7 +120,6 @@ ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, b
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result);
 ruga_status ruga_paper_minimize(ruga_skin* skin, double* x, double tolerance, ruga_skin_result* result);
-
 // What they share. Residual of a projected gradient; a direction made finite and capped to half an edge; and the
 // certificate of a converged state: *done with the outcome in result, or a step off the saddle.
 double ruga_skin_residual(ruga_skin* skin, const double* projected, const ruga_skin_terms* terms);
@@ -135,7 +139,6 @@ ruga_status ruga_armijo_search(ruga_skin* skin, const double* d, double* x, ruga
 // *moved = false where none was found. x, terms and gradient follow.
 ruga_status ruga_negative_curvature_step(ruga_skin* skin, double* x, ruga_skin_terms* terms, double* gradient,
                                          bool* moved);
-
 double ruga_largest_move(int n, const double* d); // of a vertex, in a vector [n]
 double ruga_dot_product(int n, const double* a, const double* b);
 enum { RUGA_SKIN_WORK_VECTORS = 24 };

@@ -6,19 +6,23 @@
 #define RUGA_SOLVER_STATE_H
 
 #include "solver/interior.h"
+#include "solver/moving.h"
 #include "solver/skin.h"
 
 struct ruga_state {
     const ruga_model* model;
     int frame;
     double time;
-    double* x;        // [V][3] skin
+    double* x;        // [V][3] skin: with creases its nodes
+    double* shown;    // [vertices shown][3] with creases; NULL = x
+    double* shown_embedded;
     double* embedded; // [V][3] B q
     double* q;        // [N][3] lattice nodes
     double* v;        // [N][3] their velocities
     ruga_skin* skin;
     ruga_interior* interior;                        // NULL where prescribed or absent
     ruga_volume_solver* volume; // of the dense volume; NULL for a shell
+    ruga_moving* moving;        // of a free skin in dynamic motion, NULL otherwise
     double* deviation;          // [N of the volume][3] m: displacement less that of the prescribed stretch
     double* displacement;       // [N of the volume][3] work
     double *old_q, *old_x, *next_embedded, *anchor; // work
@@ -30,6 +34,14 @@ struct ruga_state {
 int ruga_state_restart_size(const ruga_model* model);
 void ruga_state_save(const ruga_state* state, double* restart);
 ruga_status ruga_state_load(ruga_state* state, const double* restart);
+
+// Angles [segments] rad as they are followed, and rest angles as in force, of the creases' segments; NULL without.
+const double* ruga_state_crease_angles(const ruga_state* state);
+const double* ruga_state_crease_rests(const ruga_state* state);
+// Largest distance, m, between copies of one place.
+double ruga_state_gap(const ruga_state* state);
+// The forces of handles on the skin, [handles][3] N.
+ruga_status ruga_state_handle_forces(ruga_state* state, double* force);
 
 // Lattice node positions [N][3]; NULL without an interior.
 const double* ruga_state_lattice(const ruga_state* state);

@@ -29,10 +29,23 @@ static ruga_status create_vectors(ruga_state* state) {
     RUGA_TRY(RUGA_NEW_ZERO(state->next_embedded, n));
     RUGA_TRY(RUGA_NEW_ZERO(state->old_x, n));
     RUGA_TRY(RUGA_NEW_ZERO(state->anchor, n));
+    if (model->creases) {
+        RUGA_TRY(RUGA_NEW_ZERO(state->shown, 3 * (size_t)ruga_model_shown(model)->vertex_count));
+        RUGA_TRY(RUGA_NEW_ZERO(state->shown_embedded, 3 * (size_t)ruga_model_shown(model)->vertex_count));
+    }
     RUGA_TRY(RUGA_NEW_ZERO(state->q, nodes));
     RUGA_TRY(RUGA_NEW_ZERO(state->v, nodes));
     RUGA_TRY(RUGA_NEW_ZERO(state->old_q, nodes));
     return RUGA_NEW_ZERO(state->strain, model->mesh.triangle_count);
+}
+
+// What is shown follows what moves.
+static void show(ruga_state* state) {
+    const ruga_creases* creases = state->model->creases;
+    if (creases) {
+        ruga_cut_material(&creases->cut, state->x, state->shown);
+        ruga_cut_material(&creases->cut, state->embedded, state->shown_embedded);
+    }
 }
 
 static void set_start(ruga_state* state) {
@@ -68,6 +81,10 @@ static ruga_status create_state(const ruga_model* model, ruga_state** out) {
                                                 &state->volume));
     }
     set_start(state);
+    if (model->skin.motion == RUGA_SKIN_DYNAMIC) {
+        RUGA_TRY_DONE(ruga_moving_create(model, state->skin, &state->moving));
+        RUGA_TRY_DONE(ruga_moving_start(state->moving, state->x));
+    }
 done:
     if (status != RUGA_OK) {
         ruga_state_destroy(&state);
@@ -82,11 +99,12 @@ void ruga_state_destroy(ruga_state** state_pointer) {
         return;
     }
     ruga_interior_destroy(&state->interior);
+    ruga_moving_destroy(&state->moving);
     ruga_skin_destroy(&state->skin);
     ruga_volume_solver_destroy(&state->volume);
     void* const owned[] = {state->x,     state->embedded,      state->q,      state->v,     state->old_q,
                            state->old_x, state->next_embedded, state->anchor, state->strain,
-                           state->deviation, state->displacement};
+                           state->deviation, state->displacement,  state->shown,  state->shown_embedded};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
         ruga_release(owned[i]);
     }
@@ -103,11 +121,27 @@ double ruga_state_time(const ruga_state* state) {
 }
 
 const double* ruga_state_positions(const ruga_state* state) {
-    return state->x;
+    return state->shown ? state->shown : state->x;
 }
 
 const double* ruga_state_embedded(const ruga_state* state) {
-    return state->embedded;
+    return state->shown ? state->shown_embedded : state->embedded;
+}
+
+const double* ruga_state_crease_angles(const ruga_state* state) {
+    return state->skin->hinges ? state->skin->hinges->near : NULL;
+}
+
+const double* ruga_state_crease_rests(const ruga_state* state) {
+    return state->skin->hinges ? state->skin->hinges->rest : NULL;
+}
+
+double ruga_state_gap(const ruga_state* state) {
+    return state->model->creases ? ruga_cut_gap(&state->model->creases->cut, state->x) : 0;
+}
+
+ruga_status ruga_state_handle_forces(ruga_state* state, double* force) {
+    return ruga_skin_handle_forces(state->skin, state->x, force);
 }
 
 const double* ruga_state_lattice(const ruga_state* state) {
@@ -120,7 +154,7 @@ enum { RESTART_SCALARS = 5 }; // frame, time, shift memory, proximal factor, whe
 
 int ruga_state_restart_size(const ruga_model* model) {
     return RESTART_SCALARS + 3 * model->mesh.vertex_count + 6 * model->lattice.node_count +
-           3 * model->dense.volume.node_count;
+           3 * model->dense.volume.node_count + ruga_hinges_restart_size(model->creases) + ruga_moving_restart_size(model);
 }
 
 void ruga_state_save(const ruga_state* state, double* restart) {
@@ -136,6 +170,14 @@ void ruga_state_save(const ruga_state* state, double* restart) {
     memcpy(restart + n + nodes, state->v, nodes * sizeof *restart);
     memcpy(restart + n + 2 * nodes, state->deviation,
            3 * (size_t)state->model->dense.volume.node_count * sizeof *restart);
+    if (state->skin->hinges) {
+        ruga_hinges_save(state->skin->hinges,
+                         restart + n + 2 * nodes + 3 * (size_t)state->model->dense.volume.node_count);
+    }
+    if (state->moving) { // last of all
+        int size = ruga_state_restart_size(state->model) - RESTART_SCALARS;
+        ruga_moving_save(state->moving, restart + size - ruga_moving_restart_size(state->model));
+    }
 }
 
 ruga_status ruga_state_load(ruga_state* state, const double* restart) {
@@ -152,10 +194,19 @@ ruga_status ruga_state_load(ruga_state* state, const double* restart) {
     memcpy(state->v, restart + n + nodes, nodes * sizeof *restart);
     memcpy(state->deviation, restart + n + 2 * nodes,
            3 * (size_t)model->dense.volume.node_count * sizeof *restart);
+    if (state->skin->hinges) {
+        ruga_hinges_load(state->skin->hinges,
+                         restart + n + 2 * nodes + 3 * (size_t)model->dense.volume.node_count);
+    }
+    if (state->moving) {
+        int size = ruga_state_restart_size(model) - RESTART_SCALARS;
+        ruga_moving_load(state->moving, restart + size - ruga_moving_restart_size(model));
+    }
     if (model->has_interior) {
         ruga_lattice_embed(&model->lattice, state->q, state->embedded);
     }
     state->skin->time = state->time;
+    show(state);
     // The factor that the next frame starts from is made again from the state it was made at.
     return kept && model->solves_skin ? ruga_skin_factor(state->skin, state->x, 0, 0) : RUGA_OK;
 }
@@ -225,7 +276,7 @@ static int count_substeps(ruga_state* state, const double* from, const double* t
         double parts = triangle_parts(before[f], state->strain[f], critical), normal[3];
         ruga_triangle_normal(mesh->position + 3 * (size_t)t[0], mesh->position + 3 * (size_t)t[1],
                              mesh->position + 3 * (size_t)t[2], normal);
-        double area = 0.5 * ruga_norm(normal);
+        double area = 0.5 * ruga_norm(normal) * (model->creases ? model->creases->cut.piece[f].fraction : 1);
         area_of_parts[(int)fmin(ceil(fmax(parts, 1) - 1e-9), MAX_SUBSTEPS)] += area;
         total += area;
     }
@@ -249,6 +300,7 @@ static void take_skin_result(ruga_state* state, const ruga_skin_result* result, 
     report->residual_shell = result->residual;
     report->energy_membrane = result->terms.membrane;
     report->energy_bending = result->terms.bending;
+    report->energy_hinge = result->terms.hinge;
     report->energy_foundation = result->terms.foundation;
     report->energy_external = result->terms.external;
     report->constraint_residual = ruga_skin_constraint_residual(state->skin, state->x);
@@ -345,6 +397,10 @@ static void finish_report(ruga_state* state, double begin, ruga_report* out) {
 
 static void pose_at(const ruga_state* state, double time, double* q) {
     const ruga_model* model = state->model;
+    if (model->follow.count > 0) {
+        ruga_follow_at(&model->follow, time, q);
+        return;
+    }
     ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, time, q);
 }
 
@@ -363,13 +419,26 @@ static int parts_to_pose(ruga_state* state, const double* q) {
                : count_substeps(state, state->embedded, state->next_embedded);
 }
 
+// Parts that creases need: no rest angle moves too far in one.
+static int begin_hinges(ruga_state* state) {
+    double dt = state->model->step;
+    return state->skin->hinges ? ruga_hinges_begin(state->skin->hinges, state->time + dt, dt) : 1;
+}
+
+static void advance_hinges(ruga_state* state, int k, int parts) {
+    if (state->skin->hinges) {
+        ruga_hinges_advance(state->skin->hinges, (double)k / parts);
+    }
+}
+
 static ruga_status step_prescribed(ruga_state* state, ruga_report* report) {
     double begin = state->time, dt = state->model->step;
     pose_at(state, begin + dt, state->q);
-    int parts = parts_to_pose(state, state->q);
-    report->substeps = parts;
+    int parts = parts_to_pose(state, state->q), folds = begin_hinges(state);
+    parts = report->substeps = parts > folds ? parts : folds;
     set_damping(state, dt / parts);
     for (int k = 1; k <= parts; k++) {
+        advance_hinges(state, k, parts);
         state->skin->time = begin + dt * k / parts;
         pose_at(state, state->skin->time, state->q);
         RUGA_TRY(follow_pose(state, state->q, (k - 1.0) / parts, report));
@@ -448,11 +517,19 @@ static ruga_status settle(ruga_state* state) {
 }
 
 static ruga_status step_shell(ruga_state* state, ruga_report* report) {
-    state->skin->time = state->time + state->model->step;
-    report->substeps = 1;
-    memcpy(state->anchor, state->x, (size_t)state->skin->n * sizeof *state->x);
-    set_damping(state, state->model->step);
-    return solve_skin_alone(state, report);
+    double begin = state->time, dt = state->model->step;
+    int parts = report->substeps = begin_hinges(state);
+    for (int k = 1; k <= parts; k++) {
+        state->skin->time = k == parts ? begin + dt : begin + dt * k / parts;
+        advance_hinges(state, k, parts);
+        memcpy(state->anchor, state->x, (size_t)state->skin->n * sizeof *state->x);
+        set_damping(state, dt / parts);
+        if (parts > 1) {
+            RUGA_TRY(ruga_progress("static solve", (k - 1.0) / parts));
+        }
+        RUGA_TRY(solve_skin_alone(state, report));
+    }
+    return RUGA_OK;
 }
 
 static void take_interior_result(ruga_state* state, const ruga_interior_result* result, ruga_report* report) {
@@ -515,14 +592,15 @@ static ruga_status step_part(ruga_state* state, double dt, ruga_report* report) 
 // the step needs.
 static ruga_status step_coupled(ruga_state* state, ruga_report* report) {
     double begin = state->time, dt = state->model->step;
-    int parts = 1;
+    int parts = 1, folds = begin_hinges(state);
     RUGA_TRY(predict_part(state, begin + dt, dt, report));
     if (state->model->solver.method != RUGA_METHOD_PAPER) {
         ruga_lattice_embed(&state->model->lattice, state->old_q, state->next_embedded);
         parts = count_substeps(state, state->embedded, state->next_embedded);
     }
-    report->substeps = parts;
+    parts = report->substeps = parts > folds ? parts : folds;
     for (int k = 1; k <= parts; k++) {
+        advance_hinges(state, k, parts);
         if (parts > 1) {
             RUGA_TRY(predict_part(state, begin + dt * k / parts, dt / parts, report));
         }
@@ -548,7 +626,9 @@ ruga_status ruga_state_step(const ruga_model* model, ruga_state* state, ruga_rep
     *out = (ruga_report){0};
     double begin = ruga_clock();
     state->skin->work = (ruga_skin_work){0};
-    if (!model->has_interior) {
+    if (state->moving) {
+        RUGA_TRY(ruga_moving_step(state->moving, state->time, state->x, out));
+    } else if (!model->has_interior) {
         RUGA_TRY(step_shell(state, out));
     } else if (ruga_model_is_prescribed(model)) {
         RUGA_TRY(step_prescribed(state, out));
@@ -558,8 +638,9 @@ ruga_status ruga_state_step(const ruga_model* model, ruga_state* state, ruga_rep
     state->frame++;
     state->time = state->frame * model->step;
     state->skin->time = state->time;
+    show(state);
     finish_report(state, begin, out);
-    out->energy_kinetic = kinetic_energy(state);
+    out->energy_kinetic = state->moving ? out->energy_kinetic : kinetic_energy(state);
     return RUGA_OK;
 }
 
@@ -567,6 +648,10 @@ ruga_status ruga_state_measure(ruga_state* state, ruga_report* report) {
     ruga_skin_result result = {.outcome = state->start.outcome};
     double *gradient = ruga_skin_vector(state->skin, 0), *projected = ruga_skin_vector(state->skin, 1);
     *report = state->start;
+    if (state->moving) {
+        ruga_moving_measure(state->moving, state->time, state->x, report);
+        return RUGA_OK;
+    }
     if (state->volume) {
         return RUGA_OK;
     }
@@ -582,6 +667,9 @@ ruga_status ruga_state_create(const ruga_model* model, ruga_state** out) {
     *out = NULL;
     RUGA_TRY(create_state(model, out));
     ruga_status status = model->has_interior && ruga_model_is_prescribed(model) ? settle(*out) : RUGA_OK;
+    if (status == RUGA_OK) {
+        show(*out);
+    }
     if (status != RUGA_OK) {
         ruga_state_destroy(out);
     }

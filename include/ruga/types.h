@@ -84,9 +84,21 @@ typedef struct ruga_keyframe_def {
     double bump_direction[3]; // need not be of unit length
 } ruga_keyframe_def;
 
+// A moving surface that the interior follows in place of keyframes. The samples are asked for in order while a model is
+// created; another status than RUGA_OK ends that.
+typedef ruga_status ruga_sample_function(int sample, double* positions, void* context);
+typedef struct ruga_motion_def {
+    int sample_count;           // 0 = none
+    const double* times;        // [sample_count] s, ascending: linear in between, held outside
+    ruga_sample_function* read; // positions [vertex_count][3] m of the mesh's vertices
+    void* context;
+    double smoothness; // > 0: weight of the lattice's second differences beside the distance to the surface
+} ruga_motion_def;
+
 typedef enum ruga_membrane { RUGA_MEMBRANE_BARAFF_WITKIN, RUGA_MEMBRANE_STVK } ruga_membrane;
 typedef enum ruga_bending { RUGA_BENDING_HINGE, RUGA_BENDING_KIRCHHOFF_LOVE } ruga_bending;
-typedef enum ruga_skin_motion { RUGA_SKIN_STATIC, RUGA_SKIN_DAMPED } ruga_skin_motion;
+// RUGA_SKIN_DYNAMIC is for a free shell.
+typedef enum ruga_skin_motion { RUGA_SKIN_STATIC, RUGA_SKIN_DAMPED, RUGA_SKIN_DYNAMIC } ruga_skin_motion;
 typedef enum ruga_interior_motion {
     RUGA_INTERIOR_DYNAMIC,
     RUGA_INTERIOR_QUASISTATIC,
@@ -108,7 +120,7 @@ typedef enum ruga_method {
 typedef enum ruga_linear_kind { RUGA_LINEAR_DIRECT, RUGA_LINEAR_MINRES } ruga_linear_kind;
 
 // RUGA_SKIN_VOLUME: no shell, but thin stiff elements of a volume that is fine throughout, on top of a box; the
-// interior must be prescribed by stretches along the axes. RUGA_SKIN_SPRINGS is not there yet.
+// interior must be prescribed by stretches along the axes. RUGA_SKIN_SPRINGS: cloth of springs, in dynamic motion.
 typedef enum ruga_skin_model { RUGA_SKIN_SHELL, RUGA_SKIN_SPRINGS, RUGA_SKIN_VOLUME } ruga_skin_model;
 
 typedef struct ruga_skin_def {
@@ -122,6 +134,8 @@ typedef struct ruga_skin_def {
     double growth[2]; // rest lengths along and across the skin's first direction are multiplied by these
     ruga_skin_motion motion;
     double relaxation; // s, for damped motion
+    double damping;    // s, >= 0, for dynamic motion: viscous stress over the elastic stress of the strain rate
+    double drag;       // 1/s, >= 0, for dynamic motion: M drag v
     // A skin that varies: values at the mesh's vertices, linear between them, in place of those above; NULL =
     // as above.
     int vertex_count;               // of each array given: the mesh's
@@ -162,6 +176,64 @@ typedef struct ruga_solver_def {
     bool allow_coarse; // run even below 3 edges per wavelength
 } ruga_solver_def;
 
+typedef enum ruga_crease_kind {
+    RUGA_CREASE_FOLD, // cut and sewn together again: the panels turn about the curve
+    RUGA_CREASE_CUT,  // cut and left open
+} ruga_crease_kind;
+
+// How much a crease may do besides folding as one straight hinge; docs/creases.md says what is at stake.
+typedef enum ruga_crease_freedom {
+    RUGA_FREEDOM_AUTO,   // full where the curve is not straight, meets another, is closed, or its values vary
+    RUGA_FREEDOM_SINGLE, // the element of Patkar, Jin and Fedkiw (2015)
+    RUGA_FREEDOM_FULL,   // auxiliary chords: the freedom of a mesh that conforms to the curve
+} ruga_crease_freedom;
+
+typedef enum ruga_crease_path {
+    RUGA_CREASE_POLYLINE, // points in space, brought to the nearest place of the rest surface
+    RUGA_CREASE_UV,       // points in texture coordinates
+    RUGA_CREASE_EDGES,    // vertices that mesh edges join
+    RUGA_CREASE_GROUP,    // the border of a group of faces
+} ruga_crease_path;
+
+// The rest angle is angle + scale times the crease's `rest` (or point_rest); linear between keys, held outside.
+typedef struct ruga_crease_key {
+    double time;  // s, above that of the key before
+    double angle; // rad
+    double scale;
+} ruga_crease_key;
+
+// One crease curve, or those around a group, with its hinge: k l / 2 (theta - rest)^2 for each length l of it.
+// theta is 0 when flat and positive for a valley: both sides turn to where their normals point.
+typedef struct ruga_crease_def {
+    const char* name; // where it comes from, for messages and results; may be NULL
+    ruga_crease_path path;
+    bool closed;          // polyline, uv: the last point is joined to the first
+    int point_count;      // of polyline and uv
+    const double* points; // polyline: [point_count][3] m; uv: [point_count][2]
+    int vertex_count;
+    const int* vertices; // of edges
+    const char* group;
+    ruga_crease_kind kind; // a cut has no hinge
+    ruga_crease_freedom freedom;
+    char assignment;               // 'M', 'V', 'F', 'U', 'C' as in FOLD; carried along
+    double stiffness;              // N m/rad per m = N, >= 0
+    double rest;                   // rad
+    const double* point_stiffness; // [point_count or vertex_count] in place of it, linear along the curve; or NULL
+    const double* point_rest;      // likewise
+    int key_count;                 // 0: the rest angle stays as it is
+    const ruga_crease_key* keys;
+    double yield;                  // rad, >= 0: beyond it the rest angle follows; INFINITY = never
+    double rate;                   // 1/s, > 0: how fast; INFINITY = at once
+    double hardening;              // >= 0: growth of the yield angle for each rad of plastic turning
+} ruga_crease_def;
+
+// How a skin in dynamic motion begins: folded flat panels, then rolled, with a velocity where nothing holds it.
+typedef struct ruga_start_def {
+    double fold;        // part of the creases' rest angles at time 0 by which panels are turned; 0 = as the mesh is
+    double cone;        // rad: a sector of the plane z = 0 about the origin, of this angle, closes to a cone; 0 = none
+    double velocity[3]; // m/s
+} ruga_start_def;
+
 typedef struct ruga_model_def {
     ruga_mesh_def mesh;
     ruga_skin_def skin;
@@ -171,11 +243,15 @@ typedef struct ruga_model_def {
     ruga_coupling_def coupling;
     int keyframe_count;
     const ruga_keyframe_def* keyframes;
+    ruga_motion_def follow;
     double step; // s, > 0
     int frames;  // >= 1
     double gravity[3];
     int handle_count;
     const ruga_handle_def* handles;
+    int crease_count;
+    const ruga_crease_def* creases;
+    ruga_start_def start;
     ruga_solver_def solver;
     uint32_t cookie; // set by ruga_default_model_def
 } ruga_model_def;
@@ -185,6 +261,8 @@ RUGA_API ruga_model_def ruga_default_model_def(void);
 // A handle that fixes everything; a keyframe of the rest shape at time 0.
 RUGA_API ruga_handle_def ruga_default_handle_def(void);
 RUGA_API ruga_keyframe_def ruga_default_keyframe_def(void);
+// A free fold: no stiffness, no yielding.
+RUGA_API ruga_crease_def ruga_default_crease_def(void);
 
 typedef enum ruga_outcome {
     RUGA_OUTCOME_MINIMUM = 0,      // converged, certified by the inertia
@@ -203,7 +281,7 @@ typedef struct ruga_report {
     double residual_coupled;  // relative; 0 where the interior is prescribed
     double constraint_residual; // |H x - H B q| / |H B q|
     double energy_membrane, energy_bending, energy_foundation, energy_interior, energy_kinetic,
-        energy_external; // J
+        energy_external, energy_hinge; // J
     double seconds_total, seconds_interior, seconds_assembly, seconds_factor, seconds_solve, seconds_other;
 } ruga_report;
 

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// Entries of `creases` to the creases of a def: one for a curve that is drawn, one for each line of a
+// pattern.
+#include "core/memory.h"
+#include "core/vec3.h"
+#include "crease/flat.h"
+#include "io/fold.h"
+#include "io/scene_read.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double FLAT = 1e-6;          // rad off half a turn
+static const double SVG_TOLERANCE = 1e-3; // of a drawing's size, for curves
+
+static bool ends_with(const char* name, const char* end) {
+    size_t length = strlen(name), tail = strlen(end);
+    return length > tail && strcmp(name + length - tail, end) == 0;
+}
+
+bool ruga_scene_is_pattern(const char* name) {
+    return ends_with(name, ".fold") || ends_with(name, ".svg");
+}
+
+// A file that is not there is the scene's mistake, not the disk's.
+ruga_status ruga_scene_read_pattern(const char* path, int frame, ruga_crease_pattern* pattern) {
+    ruga_status status = ends_with(path, ".svg") ? ruga_svg_read(path, 1, SVG_TOLERANCE, pattern)
+                                                 : ruga_fold_read(path, frame, 1, pattern);
+    return status == RUGA_IO ? ruga_fail(RUGA_BAD_INPUT, "%s", ruga_last_error()) : status;
+}
+
+typedef struct loader {
+    ruga_scene* scene;
+    ruga_pool* pool;
+    ruga_crease_def* def;
+    int count, capacity;
+} loader;
+
+static ruga_status add_def(loader* l, const ruga_crease_def* def, const char* name) {
+    RUGA_TRY(RUGA_RESERVE(l->def, l->capacity, l->count + 1));
+    char* copy;
+    RUGA_TRY(ruga_pool_copy(l->pool, name, strlen(name), &copy));
+    l->def[l->count] = *def;
+    l->def[l->count++].name = copy;
+    return RUGA_OK;
+}
+
+// What all creases of an entry have in common.
+static ruga_crease_def common(const ruga_scene_crease* crease, const ruga_skin_def* skin) {
+    ruga_crease_def def = ruga_default_crease_def();
+    double rigidity = skin->young * pow(skin->thickness, 3) / (12 * (1 - skin->poisson * skin->poisson));
+    const ruga_scene_points *k = &crease->stiffness, *rest = &crease->rest;
+    def.kind = crease->cut ? RUGA_CREASE_CUT : RUGA_CREASE_FOLD;
+    def.freedom = crease->freedom;
+    def.assignment = crease->cut ? 'C' : 'U';
+    def.stiffness = crease->length > 0 ? rigidity / crease->length : k->count > 0 ? k->value[0] : 0;
+    def.point_stiffness = k->count > 1 ? k->value : NULL;
+    def.rest = rest->count > 0 && !rest->word ? crease->scale * rest->value[0] : NAN;
+    for (int i = 0; i < rest->count && rest->count > 1; i++) {
+        rest->value[i] *= crease->scale;
+    }
+    def.point_rest = rest->count > 1 ? rest->value : NULL;
+    def.key_count = crease->key_count;
+    def.keys = crease->keys;
+    def.yield = crease->yield;
+    def.rate = crease->rate;
+    def.hardening = crease->hardening;
+    return def;
+}
+
+static ruga_status add_lines(loader* l, const ruga_scene_crease* crease, const char* file,
+                             const ruga_crease_pattern* pattern, const ruga_curves* curves) {
+    for (int c = 0; c < curves->count; c++) {
+        const ruga_curve* curve = &curves->curve[c];
+        const ruga_crease_pattern_edge* edge = &pattern->edge[curve->label];
+        ruga_crease_def def = common(crease, &l->scene->def.skin);
+        double* points;
+        char name[320];
+        RUGA_TRY(RUGA_POOL_TAKE(l->pool, points, 3 * (size_t)curve->point_count));
+        for (int i = 0; i < 3 * curve->point_count; i++) {
+            points[i] = l->scene->mesh_unit * curve->point[i / 3][i % 3];
+        }
+        def.points = points;
+        def.point_count = curve->point_count;
+        def.closed = curve->closed;
+        def.kind = crease->cut ? RUGA_CREASE_CUT : curve->kind;
+        def.assignment = ruga_assignment_letter(edge->assignment);
+        def.rest = crease->rest.word ? crease->scale * ruga_crease_pattern_rest(edge) : def.rest;
+        (void)snprintf(name, sizeof name, "%.250s edge %d", file, curve->label);
+        RUGA_TRY(add_def(l, &def, name));
+    }
+    return RUGA_OK;
+}
+
+// Where the rest angles are those of a pattern folded flat.
+static ruga_status warn_of_faults(loader* l, const ruga_scene_crease* crease, const char* file,
+                                  const ruga_crease_pattern* pattern) {
+    int count;
+    ruga_flat_fault* fault;
+    char text[200];
+    bool flat = crease->rest.word && !pattern->folded;
+    for (int e = 0; e < pattern->edge_count; e++) {
+        double angle = ruga_crease_pattern_rest(&pattern->edge[e]);
+        flat = flat && (angle == 0 || fabs(fabs(angle) - RUGA_PI) < FLAT);
+    }
+    if (!flat) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(ruga_crease_pattern_flat_faults(pattern, &count, &fault));
+    ruga_status status = RUGA_OK;
+    if (count > 0) {
+        ruga_flat_fault_say(pattern, &fault[0], text);
+        status = ruga_scene_warn(l->scene, "%s: the pattern cannot fold flat at %d of its vertices: %s", file,
+                                 count, text);
+    }
+    ruga_release(fault);
+    return status;
+}
+
+static ruga_status add_pattern(loader* l, const ruga_scene_crease* crease, const char* directory) {
+    ruga_status status = RUGA_OK;
+    ruga_crease_pattern pattern = {0};
+    ruga_curves curves = {0};
+    const char* file = crease->fold ? crease->fold : crease->svg;
+    char* path;
+    RUGA_TRY_DONE(ruga_scene_path(directory, file, l->pool, &path));
+    RUGA_TRY_DONE(ruga_scene_read_pattern(path, crease->frame, &pattern));
+    for (int i = 0; i < pattern.note_count; i++) {
+        RUGA_TRY_DONE(ruga_scene_warn(l->scene, "%s: %s", file, pattern.note[i]));
+    }
+    RUGA_TRY_DONE(warn_of_faults(l, crease, file, &pattern));
+    RUGA_TRY_DONE(ruga_crease_pattern_curves(&pattern, &(ruga_curve){0}, false, &curves));
+    if (curves.count == 0) {
+        status = ruga_fail(RUGA_BAD_INPUT, "%s has no creases", file);
+        goto done;
+    }
+    RUGA_TRY_DONE(add_lines(l, crease, file, &pattern, &curves));
+done:
+    ruga_curves_clear(&curves);
+    ruga_crease_pattern_clear(&pattern);
+    return status;
+}
+
+static ruga_status add_drawn(loader* l, const ruga_yaml_node* curve, const char* shown,
+                             ruga_scene_crease* crease, int index) {
+    ruga_crease_def def = common(crease, &l->scene->def.skin);
+    char name[48];
+    def.closed = crease->closed;
+    def.path = crease->polyline.count > 0      ? RUGA_CREASE_POLYLINE
+               : crease->uv.count > 0          ? RUGA_CREASE_UV
+               : crease->path.vertex_count > 0 ? RUGA_CREASE_EDGES
+                                               : RUGA_CREASE_GROUP;
+    const ruga_scene_points* points = def.path == RUGA_CREASE_UV ? &crease->uv : &crease->polyline;
+    def.point_count = points->count;
+    def.points = points->value;
+    if (def.path == RUGA_CREASE_EDGES) {
+        RUGA_TRY(ruga_scene_map_vertices(ruga_yaml_find(curve, "vertices"), shown, &l->scene->mesh,
+                                         &crease->path));
+        def.vertices = crease->path.vertices;
+        def.vertex_count = crease->path.vertex_count;
+    }
+    def.group = crease->group;
+    (void)snprintf(name, sizeof name, "creases.%d", index);
+    return add_def(l, &def, name);
+}
+
+static ruga_status keep(loader* l) {
+    ruga_crease_def* kept;
+    RUGA_TRY(RUGA_POOL_TAKE(l->pool, kept, l->count));
+    memcpy(kept, l->def, (size_t)l->count * sizeof *kept);
+    l->scene->def.creases = kept;
+    l->scene->def.crease_count = l->count;
+    return RUGA_OK;
+}
+
+ruga_status ruga_scene_load_creases(const ruga_yaml_node* root, const char* directory, ruga_scene* scene) {
+    ruga_status status = RUGA_OK;
+    ruga_scene_parts* parts = scene->storage;
+    loader l = {.scene = scene, .pool = &parts->pool};
+    const ruga_yaml_node* list = ruga_yaml_find(root, "creases");
+    const ruga_yaml_node* node = list ? list->first : NULL;
+    for (int i = 0; i < parts->crease_count; i++, node = node->next) {
+        ruga_scene_crease* crease = &parts->crease[i];
+        const ruga_yaml_node* curve = ruga_yaml_find(node, "curve");
+        char shown[48];
+        (void)snprintf(shown, sizeof shown, "creases.%d.curve", i);
+        RUGA_TRY_DONE(crease->fold || crease->svg
+                          ? ruga_yaml_fail_at(add_pattern(&l, crease, directory), curve, shown)
+                          : add_drawn(&l, curve, shown, crease, i));
+    }
+    RUGA_TRY_DONE(l.count > 0 ? keep(&l) : RUGA_OK);
+done:
+    ruga_release(l.def);
+    return status;
+}
