@@ -277,6 +277,11 @@ static const struct {
                    "  - time: 0.5 s\n"
                    "    stretch: [0.95, 1, 1]\n"
                    "    bump: {center: [0, 0, 10 cm], radius: 5 cm, depth: 1 cm}\n"},
+    {"follow",
+     "mesh: {file: cube.obj, unit: cm}\n"
+     "follow:\n"
+     "  file: cube_%d.obj           # cube_0.obj, cube_1.obj and so on, or a point cache: cube.pc2\n"
+     "  rate: 25 1/s              # samples in a second\n"},
     {"time", "time: {step: 20 ms, frames: 50}\n"},
     {"gravity", "gravity: [0, 0, -9.81]\n"},
     {"handles", "handles:\n"
