@@ -24,8 +24,10 @@
 enum { SIZE_MAX_TEXELS = 16384, MAPS_MAX = 64, BLEND_SIZE = 256 };
 static const double LEAST_SLOPE_NORMAL = 0.05; // a normal further over has no slope to blend
 
+static const char map_names[] = "displacement|normal|tension|ao";
+
 static const ruga_option options[] = {
-    {"--map", NULL, "NAME",
+    {"--map", NULL, map_names,
      "displacement: vectors in the base's tangent space; normal: in tangent space;\n"
      "tension: largest and smallest principal stretch and area ratio, each less 1;\n"
      "ao: the part of the sky that is seen [displacement]",
@@ -121,7 +123,7 @@ static ruga_status choose_numbers(job* j) {
     j->def.samples = 64;
     j->def.margin = 16;
     j->def.sky = INFINITY;
-    RUGA_TRY(ruga_option_choice(j->arguments, "--map", "displacement|normal|tension|ao", &map));
+    RUGA_TRY(ruga_option_choice(j->arguments, "--map", map_names, &map));
     j->def.map = (ruga_bake_map)map;
     RUGA_TRY(ruga_integer(j->arguments, "--size", 4, SIZE_MAX_TEXELS, &j->size));
     RUGA_TRY(ruga_integer(j->arguments, "--samples", 1, 1000000, &j->def.samples));

@@ -14,6 +14,8 @@
 
 enum { SERIES_MAX = 7, PAGE_COLUMNS = 2 };
 
+static const char axes[] = "none|x|y|xy";
+
 static const ruga_option options[] = {
     {"--what", NULL, "LIST",
      "plots with commas between them. Of a result: energy, residual, iterations, seconds,\n"
@@ -21,7 +23,7 @@ static const ruga_option options[] = {
      "columns, with + between those of one plot [each]",
      false},
     {"--x", NULL, "COLUMN", "of a CSV table: the column along the x axis [the first]", false},
-    {"--log", NULL, "AXES", "of a CSV table: logarithmic axes, x, y or xy", false},
+    {"--log", NULL, axes, "of a CSV table: logarithmic axes [none]", false},
     {"--output", "-o", "FILE", "the file to write, .svg or .png", false},
     {0},
 };
@@ -193,7 +195,7 @@ static ruga_status plot_table(const ruga_arguments* arguments, const char* path)
     int logarithmic = 0;
     table t = {.file = ruga_operand(arguments)};
     ruga_status status = RUGA_OK;
-    RUGA_TRY(ruga_option_choice(arguments, "--log", "none|x|y|xy", &logarithmic));
+    RUGA_TRY(ruga_option_choice(arguments, "--log", axes, &logarithmic));
     RUGA_TRY(ruga_check_input(t.file));
     RUGA_TRY(ruga_csv_read(t.file, &t.csv));
     t.log_x = logarithmic & 1;

@@ -196,6 +196,13 @@ class Meshes(Case):
         self.refused("make", "sheet", "--size", "1,1", "--edge", "1 um", "-o", "a.obj", saying="vertices")
         self.refused("make", "sheet", "-o", "a.stl", saying="obj")
         self.refused("make", "sheet", "-o", "none/a.obj", saying="folder")
+        self.refused("make", "miura", "-o", "a.obj", saying="written as .fold")
+        self.refused("make", "miura", "--edge", "1mm", "-o", "a.fold", saying="is a crease pattern")
+        self.refused("make", "sheet", "--fold", "10 deg", "-o", "a.obj", saying="is a mesh")
+        self.refused("make", "pleats", "--cells", "50,1", "-o", "a.fold", saying="do not fit")
+        self.refused("make", "arcs", "--size", "2,1", "-o", "a.fold", saying="outer radius")
+        self.refused("creases", "scene.yaml", "-o", "a.fold", saying="scene.yaml")
+        self.refused("creases", "scene.yaml", "--strength", "2", "-o", "a.fold", saying="not between")
         os.mkdir(self.path("folder.obj"))
         self.refused("make", "sheet", "-o", "folder.obj", saying="is a folder")
         self.assertEqual(sorted(os.listdir(self.folder)), ["folder.obj", "scene.yaml"])
@@ -324,7 +331,11 @@ class Runs(Case):
         self.refused("export", "a.h5", "--format", "obj", "--frames", "0:3", "-o", "one.obj", saying="%04d")
         self.refused("export", "a.h5", "--format", "obj", "--frames", "3:11", "-o", "a%d.obj", saying="0:10")
         self.refused("export", "a.h5", "--format", "obj", "--frames", "4:3", "-o", "a%d.obj", saying="range")
-        self.refused("export", "a.h5", "--format", "fold", "-o", "a.fold", saying="not available")
+        self.ruga("export", "a.h5", "-o", "plain.fold")  # without creases: all lines are flat
+        self.refused("export", "a.h5", "--unit", "mm", "-o", "b.fold", saying="in metres")
+        self.refused("creases", "a.h5", "--min-length", "3 m", "-o", "c.fold", saying="no ridge")
+        self.refused("creases", "a.h5", "-o", "c.obj", saying=".fold or .svg")
+        self.refused("measure", "a.h5", "--curve", "none/c.csv", saying="folder")
         self.refused("export", "a.h5", "--unit", "kg", "-o", "a.obj", saying="--unit")
 
     def test_existing_results_and_resume(self):
