@@ -51,14 +51,15 @@ static ruga_status set_stiffness(const ruga_mesh* mesh, const ruga_connectivity*
     return status;
 }
 
-static ruga_status fill(const ruga_mesh* mesh, const ruga_connectivity* connectivity, double b,
-                        const double* local_b, ruga_foundation* f) {
+static ruga_status allocate(const ruga_connectivity* connectivity, ruga_foundation* f) {
     RUGA_TRY(copy_topology(connectivity, f));
     RUGA_TRY(RUGA_NEW(f->diagonal, f->vertex_count));
     RUGA_TRY(RUGA_NEW(f->edge_value, f->edge_count));
-    RUGA_TRY(RUGA_NEW(f->vertex_scale, f->vertex_count));
-    RUGA_TRY(set_stiffness(mesh, connectivity, b, local_b, f));
-    ruga_mesh_vertex_areas(mesh, f->vertex_scale);
+    return RUGA_NEW(f->vertex_scale, f->vertex_count);
+}
+
+// W from b w_e and areas.
+static void set_matrix(ruga_foundation* f) {
     for (int v = 0; v < f->vertex_count; v++) {
         f->diagonal[v] = spring_of(f, v) * f->vertex_scale[v];
     }
@@ -68,6 +69,14 @@ static ruga_status fill(const ruga_mesh* mesh, const ruga_connectivity* connecti
         f->diagonal[f->edge[e][0]] += stiffness;
         f->diagonal[f->edge[e][1]] += stiffness;
     }
+}
+
+static ruga_status fill(const ruga_mesh* mesh, const ruga_connectivity* connectivity, double b,
+                        const double* local_b, ruga_foundation* f) {
+    RUGA_TRY(allocate(connectivity, f));
+    RUGA_TRY(set_stiffness(mesh, connectivity, b, local_b, f));
+    ruga_mesh_vertex_areas(mesh, f->vertex_scale);
+    set_matrix(f);
     return RUGA_OK;
 }
 
@@ -91,6 +100,26 @@ ruga_status ruga_foundation_create_local(const ruga_mesh* mesh, const ruga_conne
     RUGA_TRY_DONE(RUGA_NEW(foundation->local_spring, mesh->vertex_count));
     memcpy(foundation->local_spring, a, (size_t)mesh->vertex_count * sizeof *a);
     RUGA_TRY_DONE(fill(mesh, connectivity, 0, b, foundation));
+done:
+    if (status != RUGA_OK) {
+        ruga_foundation_clear(foundation);
+    }
+    return status;
+}
+
+ruga_status ruga_foundation_create_pieces(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                          const double* area, const double* a, const double* triangle_b,
+                                          ruga_foundation* foundation) {
+    ruga_status status = RUGA_OK;
+    size_t vertices = (size_t)mesh->vertex_count;
+    *foundation =
+        (ruga_foundation){.vertex_count = mesh->vertex_count, .edge_count = connectivity->edge_count};
+    RUGA_TRY_DONE(RUGA_NEW(foundation->local_spring, vertices));
+    memcpy(foundation->local_spring, a, vertices * sizeof *a);
+    RUGA_TRY_DONE(allocate(connectivity, foundation));
+    RUGA_TRY_DONE(ruga_laplacian_weights_scaled(mesh, connectivity, triangle_b, foundation->edge_value));
+    memcpy(foundation->vertex_scale, area, vertices * sizeof *area);
+    set_matrix(foundation);
 done:
     if (status != RUGA_OK) {
         ruga_foundation_clear(foundation);

@@ -33,6 +33,11 @@ ruga_status ruga_foundation_create(const ruga_mesh* mesh, const ruga_connectivit
 // The same with a and b for each vertex, [V].
 ruga_status ruga_foundation_create_local(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
                                          const double* a, const double* b, ruga_foundation* foundation);
+// The same on pieces of a cut mesh (crease/cut.h), which overlap: area [V] m^2 and a [V] of the vertices, triangle_b [F]
+// N/m with the part of each triangle that is material. Of the connectivity edges and neighbours alone are used.
+ruga_status ruga_foundation_create_pieces(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                          const double* area, const double* a, const double* triangle_b,
+                                          ruga_foundation* foundation);
 void ruga_foundation_clear(ruga_foundation* foundation);
 
 // Energy in J at d [V][3]; ADDS W d to gradient [V][3] where not NULL. force_square (where not NULL) is SET

@@ -10,6 +10,7 @@
 #include "lattice/assemble.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { CHUNK = 1024 };
 
@@ -118,6 +119,32 @@ ruga_status ruga_lattice_bind(ruga_lattice* lattice, int vertex_count, const dou
         ruga_lattice_shape(lattice, xi, lattice->vertex_weight + (size_t)v * (size_t)npe, NULL);
     }
     return index_nodes(lattice);
+}
+
+ruga_status ruga_lattice_copy_vertices(ruga_lattice* lattice, int count, const int* source) {
+    ruga_status status = RUGA_OK;
+    size_t npe = (size_t)lattice->nodes_per_element;
+    int* element = NULL;
+    double* weight = NULL;
+    RUGA_TRY_DONE(RUGA_NEW(element, count));
+    RUGA_TRY_DONE(RUGA_NEW(weight, (size_t)count * npe));
+    for (int i = 0; i < count; i++) {
+        element[i] = lattice->vertex_element[source[i]];
+        memcpy(weight + (size_t)i * npe, lattice->vertex_weight + (size_t)source[i] * npe, npe * sizeof *weight);
+    }
+    ruga_release(lattice->vertex_element);
+    ruga_release(lattice->vertex_weight);
+    ruga_release(lattice->gather_start);
+    ruga_release(lattice->gather);
+    lattice->vertex_count = count;
+    lattice->vertex_element = element;
+    lattice->vertex_weight = weight;
+    lattice->gather_start = lattice->gather = NULL;
+    return index_nodes(lattice);
+done:
+    ruga_release(element);
+    ruga_release(weight);
+    return status;
 }
 
 typedef struct embed_context {

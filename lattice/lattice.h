@@ -46,6 +46,9 @@ void ruga_lattice_shape(const ruga_lattice* lattice, const double xi[3], double*
 // Rest position and local coordinates of quadrature point g of element e (3-point Gauss per axis).
 void ruga_lattice_point(const ruga_lattice* lattice, int element, int g, double xi[3], double x[3]);
 
+// Replaces the surface's vertices by copies of them: row i of B becomes the old row of source[i] [count].
+ruga_status ruga_lattice_copy_vertices(ruga_lattice* lattice, int count, const int* source);
+
 // x = B q: x [V][3], q [N][3].   f_q += B^T f_x.
 void ruga_lattice_embed(const ruga_lattice* lattice, const double* q, double* x);
 void ruga_lattice_embed_transpose(const ruga_lattice* lattice, const double* fx, double* fq);

@@ -138,8 +138,8 @@ static ruga_status add_curves(int count, const ruga_crease_def* defs, const ruga
                               const ruga_connectivity* edges, ruga_creases* c, ruga_curves* curves) {
     for (int i = 0; i < count; i++) {
         RUGA_TRY(check_def(i, &defs[i]));
-        RUGA_TRY(copy_law(&defs[i], &c->law[i]));
         c->law_count = i + 1;
+        RUGA_TRY(copy_law(&defs[i], &c->law[i]));
         ruga_status status = add_curve(i, &defs[i], mesh, edges, curves);
         if (status != RUGA_OK) {
             return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "creases.%d", i) : status;
@@ -308,7 +308,11 @@ ruga_status ruga_creases_create(int count, const ruga_crease_def* defs, const ru
     RUGA_TRY(RUGA_NEW_ZERO(c, 1));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(c->law, count));
     RUGA_TRY_DONE(add_curves(count, defs, mesh, connectivity, c, &curves));
-    RUGA_TRY_DONE(ruga_raster_create(mesh, &curves, &how, &c->raster));
+    status = ruga_raster_create(mesh, &curves, &how, &c->raster);
+    if (status == RUGA_BAD_INPUT) {
+        status = ruga_fail_prefix(status, "creases");
+    }
+    RUGA_TRY_DONE(status);
     RUGA_TRY_DONE(ruga_cut_create(&c->raster, &c->cut));
     RUGA_TRY_DONE(ruga_sewing_create(&c->cut, NULL, &c->sewing));
     RUGA_TRY_DONE(ruga_connectivity_create(&c->cut.material, &c->shown));
@@ -325,16 +329,77 @@ done:
 }
 
 ruga_status ruga_creases_nodes(const ruga_creases* c, ruga_mesh* nodes) {
+    ruga_status status = RUGA_OK;
     *nodes = (ruga_mesh){0};
-    RUGA_TRY(RUGA_NEW(nodes->position, 3 * (size_t)c->cut.node_count));
-    RUGA_TRY(RUGA_NEW(nodes->triangle, 3 * (size_t)c->cut.piece_count));
+    RUGA_TRY_DONE(RUGA_NEW(nodes->position, 3 * (size_t)c->cut.node_count));
+    RUGA_TRY_DONE(RUGA_NEW(nodes->triangle, 3 * (size_t)c->cut.piece_count));
     nodes->vertex_count = c->cut.node_count;
     nodes->triangle_count = c->cut.piece_count;
     ruga_cut_rest(&c->raster, &c->cut, nodes->position);
     for (int p = 0; p < c->cut.piece_count; p++) {
         memcpy(nodes->triangle + 3 * (size_t)p, c->cut.piece[p].node, sizeof c->cut.piece[p].node);
     }
-    return RUGA_OK;
+done:
+    if (status != RUGA_OK) {
+        ruga_mesh_clear(nodes);
+    }
+    return status;
+}
+
+// A pattern of single entries lists each edge once, by its lower end.
+static void take_edges(const ruga_sparse* lower, const ruga_mesh* nodes, ruga_connectivity* c) {
+    int count = 0;
+    for (int j = 0; j < lower->columns; j++) {
+        for (int p = lower->start[j] + 1; p < lower->start[j + 1]; p++, count++) {
+            c->edge[count][0] = j;
+            c->edge[count][1] = lower->index[p];
+            c->neighbour_start[j]++;
+            c->neighbour_start[lower->index[p]]++;
+        }
+    }
+    for (int j = 0; j < lower->columns; j++) {
+        c->neighbour_start[j + 1] += c->neighbour_start[j];
+    }
+    for (int e = count - 1; e >= 0; e--) {
+        for (int end = 0; end < 2; end++) {
+            int at = --c->neighbour_start[c->edge[e][end]];
+            c->neighbour[at] = c->edge[e][1 - end];
+            c->neighbour_edge[at] = e;
+        }
+    }
+    for (int k = 0; k < 3 * nodes->triangle_count; k++) {
+        int a = nodes->triangle[k], b = nodes->triangle[k % 3 == 2 ? k - 2 : k + 1];
+        int low = a < b ? a : b, high = a < b ? b : a;
+        // Before the column's entries stand as many diagonals as columns up to it.
+        c->triangle_edge[k / 3][k % 3] = ruga_sparse_find(lower, high, low) - (low + 1);
+    }
+}
+
+ruga_status ruga_creases_edges(const ruga_mesh* nodes, ruga_connectivity* edges) {
+    ruga_status status = RUGA_OK;
+    int halves = 3 * nodes->triangle_count, (*pair)[2] = NULL;
+    ruga_sparse lower = {0};
+    *edges = (ruga_connectivity){.vertex_count = nodes->vertex_count, .triangle_count = nodes->triangle_count};
+    RUGA_TRY_DONE(RUGA_NEW(pair, halves));
+    for (int k = 0; k < halves; k++) {
+        pair[k][0] = nodes->triangle[k];
+        pair[k][1] = nodes->triangle[k % 3 == 2 ? k - 2 : k + 1];
+    }
+    RUGA_TRY_DONE(ruga_sparse_from_pairs(nodes->vertex_count, 1, halves, (const int(*)[2])pair, &lower));
+    edges->edge_count = lower.start[lower.columns] - lower.columns;
+    RUGA_TRY_DONE(RUGA_NEW(edges->edge, edges->edge_count));
+    RUGA_TRY_DONE(RUGA_NEW(edges->triangle_edge, nodes->triangle_count));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(edges->neighbour_start, (size_t)nodes->vertex_count + 2));
+    RUGA_TRY_DONE(RUGA_NEW(edges->neighbour, 2 * (size_t)edges->edge_count));
+    RUGA_TRY_DONE(RUGA_NEW(edges->neighbour_edge, 2 * (size_t)edges->edge_count));
+    take_edges(&lower, nodes, edges);
+done:
+    ruga_sparse_clear(&lower);
+    ruga_release(pair);
+    if (status != RUGA_OK) {
+        ruga_connectivity_clear(edges);
+    }
+    return status;
 }
 
 ruga_status ruga_creases_places(const ruga_creases* c, ruga_load_place (**place)[3]) {

@@ -57,6 +57,8 @@ void ruga_creases_destroy(ruga_creases** creases);
 void ruga_creases_set_bending(ruga_creases* creases, const ruga_shell_material* material);
 // The mesh of nodes and pieces.
 ruga_status ruga_creases_nodes(const ruga_creases* creases, ruga_mesh* nodes);
+// Edges and neighbours of that mesh, which may have more than two triangles at an edge; nothing else is set.
+ruga_status ruga_creases_edges(const ruga_mesh* nodes, ruga_connectivity* edges);
 // Where the corners of the material's triangles are, [F of the material][3], for loads.
 ruga_status ruga_creases_places(const ruga_creases* creases, ruga_load_place (**place)[3]);
 // How a shell on the nodes is cut.

@@ -130,8 +130,6 @@ static ruga_status check_creases(const ruga_model_def* def) {
         trouble = "solver.method: paper is the published method, which knows no creases";
     } else if (def->has_interior && def->coupling.kind == RUGA_COUPLING_NONE && !def->coupling.foundation) {
         trouble = "with coupling.kind: none and no foundation the skin goes where the interior takes it";
-    } else if (def->has_interior) {
-        trouble = "creases on a skin with an interior are not available yet";
     } else if (skin->vertex_thickness || skin->vertex_young || skin->vertex_growth) {
         trouble = "a skin that varies is not available yet together with creases";
     }
@@ -249,15 +247,52 @@ static void hold_node(ruga_model* model, int node, int h) {
     }
 }
 
-// All copies of a vertex.
-static void hold_vertex(ruga_model* model, int v, int h) {
-    const ruga_creases* creases = model->creases;
-    for (int k = creases ? creases->cut.copy_start[v] : 0; creases && k < creases->cut.copy_start[v + 1]; k++) {
-        hold_node(model, creases->cut.copy[k], h);
+// Whether a place of a piece is in the handle's region: a vertex that it selects, or a point between two of these, or
+// one that it contains.
+static bool place_is_in(const ruga_model* model, const ruga_cut_piece* piece, int place, int h, const bool* in) {
+    const ruga_cut* cut = &model->creases->cut;
+    int i = place / 2;
+    if (place % 2 == 0) {
+        return in[cut->source[piece->node[i]]];
     }
-    if (!creases) {
-        hold_node(model, v, h);
+    const double* x = cut->material.position + 3 * (size_t)ruga_cut_vertex(cut, piece, place);
+    return (in[cut->source[piece->node[i]]] && in[cut->source[piece->node[(i + 1) % 3]]]) ||
+           ruga_region_contains_within(&model->handles[h].region, x, ruga_region_slack(model->sheet));
+}
+
+// A copy of a selected vertex is held where its piece has a vertex in the region itself; a piece that lies in the region
+// as a whole is held as a whole. So a crease across the rim of a region is held from both sides, and one that bounds a
+// region can turn.
+static void hold_pieces(ruga_model* model, int h, const bool* in) {
+    const ruga_cut* cut = &model->creases->cut;
+    for (int p = 0; p < cut->piece_count; p++) {
+        const ruga_cut_piece* piece = &cut->piece[p];
+        bool any = false, all = true;
+        for (int k = 0; k < piece->polygon.count; k++) {
+            bool inside = place_is_in(model, piece, piece->polygon.place[k], h, in);
+            any = any || (inside && piece->polygon.place[k] % 2 == 0);
+            all = all && inside;
+        }
+        for (int i = 0; i < 3; i++) {
+            if (all || (any && in[cut->source[piece->node[i]]])) {
+                hold_node(model, piece->node[i], h);
+            }
+        }
     }
+}
+
+static void hold_selected(ruga_model* model, int h, int count, const int* selected, bool* in) {
+    if (!model->creases) {
+        for (int k = 0; k < count; k++) {
+            hold_node(model, selected[k], h);
+        }
+        return;
+    }
+    memset(in, 0, (size_t)model->sheet->vertex_count * sizeof *in);
+    for (int k = 0; k < count; k++) {
+        in[selected[k]] = true;
+    }
+    hold_pieces(model, h, in);
 }
 
 // The uncut triangle nearest to the middle; any where all are cut.
@@ -307,9 +342,11 @@ static void hold_in_space(ruga_model* model) {
 static ruga_status build_skin_holds(ruga_model* model) {
     ruga_status status = RUGA_OK;
     int nodes = model->mesh.vertex_count, *selected = NULL;
+    bool* in = NULL;
     RUGA_TRY(RUGA_NEW(model->skin_handle, 3 * (size_t)nodes));
     memset(model->skin_handle, -1, 3 * (size_t)nodes * sizeof *model->skin_handle);
-    RUGA_TRY(RUGA_NEW(selected, model->sheet->vertex_count));
+    RUGA_TRY_DONE(RUGA_NEW(selected, model->sheet->vertex_count));
+    RUGA_TRY_DONE(RUGA_NEW(in, model->sheet->vertex_count));
     for (int h = 0; h < model->handle_count; h++) {
         const ruga_handle_def* handle = &model->handles[h];
         int count;
@@ -322,15 +359,14 @@ static ruga_status build_skin_holds(ruga_model* model) {
             status = ruga_fail(RUGA_BAD_INPUT, "handles.%d: the region selects no vertex of the skin", h);
             goto done;
         }
-        for (int k = 0; k < count; k++) {
-            hold_vertex(model, selected[k], h);
-        }
+        hold_selected(model, h, count, selected, in);
     }
     if (model->creases && !model->has_interior && !model->any_skin_held && model->skin.motion != RUGA_SKIN_DYNAMIC) {
         hold_in_space(model);
     }
 done:
     ruga_release(selected);
+    ruga_release(in);
     return status;
 }
 
@@ -396,10 +432,41 @@ done:
     return status;
 }
 
+// On the pieces: springs by the area of material at each node, the rest by its part of each triangle.
+static ruga_status build_pieces_foundation(ruga_model* model, double modulus) {
+    ruga_status status = RUGA_OK;
+    const ruga_creases* creases = model->creases;
+    const double* local = model->variation.wavelength;
+    int nodes = model->mesh.vertex_count, pieces = model->mesh.triangle_count;
+    ruga_connectivity edges = {0};
+    double *a = NULL, *b = NULL;
+    RUGA_TRY_DONE(RUGA_NEW(a, nodes));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(b, pieces));
+    for (int n = 0; n < nodes; n++) {
+        a[n] = foundation_a(modulus, local ? local[n] : model->wavelength);
+    }
+    for (int p = 0; p < pieces; p++) {
+        for (int i = 0; i < 3; i++) {
+            double wavelength = local ? local[model->mesh.triangle[3 * p + i]] : model->wavelength;
+            b[p] += creases->cut.piece[p].fraction * foundation_b(modulus, wavelength) / 3;
+        }
+    }
+    RUGA_TRY_DONE(ruga_creases_edges(&model->mesh, &edges));
+    RUGA_TRY_DONE(ruga_foundation_create_pieces(&model->mesh, &edges, creases->area, a, b, &model->foundation));
+done:
+    ruga_connectivity_clear(&edges);
+    ruga_release(a);
+    ruga_release(b);
+    return status;
+}
+
 static ruga_status build_foundation(ruga_model* model) {
     double nu = model->interior.poisson, modulus = model->interior.young / (1 - nu * nu);
     model->foundation_a = foundation_a(modulus, model->wavelength);
     model->foundation_b = foundation_b(modulus, model->wavelength);
+    if (model->creases) {
+        return build_pieces_foundation(model, modulus);
+    }
     if (model->variation.wavelength) {
         return build_local_foundation(model, modulus);
     }
@@ -437,6 +504,9 @@ static ruga_status build_interior(ruga_model* model) {
     if (!ruga_model_is_prescribed(model)) {
         RUGA_TRY(ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles,
                                   &model->rows));
+    }
+    if (model->creases) {
+        RUGA_TRY(ruga_lattice_copy_vertices(&model->lattice, model->mesh.vertex_count, model->creases->cut.source));
     }
     return build_coupling(model);
 }

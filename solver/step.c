@@ -276,7 +276,7 @@ static int count_substeps(ruga_state* state, const double* from, const double* t
         double parts = triangle_parts(before[f], state->strain[f], critical), normal[3];
         ruga_triangle_normal(mesh->position + 3 * (size_t)t[0], mesh->position + 3 * (size_t)t[1],
                              mesh->position + 3 * (size_t)t[2], normal);
-        double area = 0.5 * ruga_norm(normal);
+        double area = 0.5 * ruga_norm(normal) * (model->creases ? model->creases->cut.piece[f].fraction : 1);
         area_of_parts[(int)fmin(ceil(fmax(parts, 1) - 1e-9), MAX_SUBSTEPS)] += area;
         total += area;
     }
@@ -415,13 +415,26 @@ static int parts_to_pose(ruga_state* state, const double* q) {
                : count_substeps(state, state->embedded, state->next_embedded);
 }
 
+// Parts that creases need: no rest angle moves too far in one.
+static int begin_hinges(ruga_state* state) {
+    double dt = state->model->step;
+    return state->skin->hinges ? ruga_hinges_begin(state->skin->hinges, state->time + dt, dt) : 1;
+}
+
+static void advance_hinges(ruga_state* state, int k, int parts) {
+    if (state->skin->hinges) {
+        ruga_hinges_advance(state->skin->hinges, (double)k / parts);
+    }
+}
+
 static ruga_status step_prescribed(ruga_state* state, ruga_report* report) {
     double begin = state->time, dt = state->model->step;
     pose_at(state, begin + dt, state->q);
-    int parts = parts_to_pose(state, state->q);
-    report->substeps = parts;
+    int parts = parts_to_pose(state, state->q), folds = begin_hinges(state);
+    parts = report->substeps = parts > folds ? parts : folds;
     set_damping(state, dt / parts);
     for (int k = 1; k <= parts; k++) {
+        advance_hinges(state, k, parts);
         state->skin->time = begin + dt * k / parts;
         pose_at(state, state->skin->time, state->q);
         RUGA_TRY(follow_pose(state, state->q, (k - 1.0) / parts, report));
@@ -497,18 +510,6 @@ static ruga_status settle(ruga_state* state) {
     }
     memset(state->v, 0, nodes * sizeof *state->v);
     return RUGA_OK;
-}
-
-// Parts that creases need: no rest angle moves too far in one.
-static int begin_hinges(ruga_state* state) {
-    double dt = state->model->step;
-    return state->skin->hinges ? ruga_hinges_begin(state->skin->hinges, state->time + dt, dt) : 1;
-}
-
-static void advance_hinges(ruga_state* state, int k, int parts) {
-    if (state->skin->hinges) {
-        ruga_hinges_advance(state->skin->hinges, (double)k / parts);
-    }
 }
 
 static ruga_status step_shell(ruga_state* state, ruga_report* report) {
@@ -587,14 +588,15 @@ static ruga_status step_part(ruga_state* state, double dt, ruga_report* report) 
 // the step needs.
 static ruga_status step_coupled(ruga_state* state, ruga_report* report) {
     double begin = state->time, dt = state->model->step;
-    int parts = 1;
+    int parts = 1, folds = begin_hinges(state);
     RUGA_TRY(predict_part(state, begin + dt, dt, report));
     if (state->model->solver.method != RUGA_METHOD_PAPER) {
         ruga_lattice_embed(&state->model->lattice, state->old_q, state->next_embedded);
         parts = count_substeps(state, state->embedded, state->next_embedded);
     }
-    report->substeps = parts;
+    parts = report->substeps = parts > folds ? parts : folds;
     for (int k = 1; k <= parts; k++) {
+        advance_hinges(state, k, parts);
         if (parts > 1) {
             RUGA_TRY(predict_part(state, begin + dt * k / parts, dt / parts, report));
         }
