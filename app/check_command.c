@@ -7,10 +7,11 @@
 #include "core/vec3.h"
 #include "mesh/doctor.h"
 
+static const char uses[] = "embedded|shell";
+
 static const ruga_option options[] = {
     {"--group", "-g", "NAME", "only the faces of this group; may be given several times [all]", true},
-    {"--as", NULL, "USE", "embedded: the surface of a solid; shell: open edges are allowed [embedded]",
-     false},
+    {"--as", NULL, uses, "embedded: the surface of a solid; shell: open edges are allowed [embedded]", false},
     {"--json", "-j", NULL, "print one JSON object", false},
     {0},
 };
@@ -152,7 +153,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     ruga_mesh mesh = {0};
     ruga_check_report report = {0};
     int use = 0, group_count;
-    RUGA_TRY(ruga_option_choice(arguments, "--as", "embedded|shell", &use));
+    RUGA_TRY(ruga_option_choice(arguments, "--as", uses, &use));
     const char* const* groups = ruga_values(arguments, "--group", &group_count);
     RUGA_TRY(ruga_read_surface(ruga_operand(arguments), group_count, groups, &mesh));
     RUGA_TRY_DONE(ruga_mesh_check(&mesh, use == 0 ? RUGA_CHECK_EMBEDDED : RUGA_CHECK_SHELL, &report));

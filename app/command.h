@@ -19,7 +19,7 @@ enum {
 typedef struct ruga_option {
     const char* name;   // "--edge"; NULL ends a table
     const char* letter; // "-e", or NULL
-    const char* value;  // what it takes, "LENGTH"; NULL = nothing
+    const char* value;  // what it takes, "LENGTH"; "a|b|c" = one of these; NULL = nothing
     const char* help;   // meaning, unit and default
     bool repeats;       // may be given several times
 } ruga_option;
@@ -42,8 +42,9 @@ typedef struct ruga_command {
 } ruga_command;
 
 extern const ruga_command ruga_make_command, ruga_check_command, ruga_remesh_command, ruga_explain_command,
-    ruga_run_command, ruga_measure_command, ruga_export_command, ruga_render_command, ruga_validate_command,
-    ruga_sweep_command;
+    ruga_run_command, ruga_measure_command, ruga_export_command, ruga_bake_command, ruga_render_command,
+    ruga_plot_command, ruga_view_command, ruga_creases_command, ruga_validate_command, ruga_sweep_command,
+    ruga_manual_command;
 extern const ruga_command* const ruga_commands[]; // ended by NULL
 
 // ---- arguments -----------------------------------------------------------------------------------------
@@ -66,13 +67,14 @@ ruga_status ruga_required(const ruga_arguments* arguments, const char* option, c
 ruga_status ruga_quantity(const ruga_arguments* arguments, const char* option, const char* dimension,
                           double* value);
 ruga_status ruga_integer(const ruga_arguments* arguments, const char* option, int low, int high, int* value);
-// *index of the value in "a|b|c".
+// *index of the value in "a|b|c", which the option's table names as well.
 ruga_status ruga_option_choice(const ruga_arguments* arguments, const char* option, const char* choices,
                                int* index);
 
 // ---- help ----------------------------------------------------------------------------------------------
 
 extern const ruga_option ruga_common_options[]; // of every command
+extern const char ruga_help_about[], ruga_help_session[];
 
 void ruga_print_help(void);
 void ruga_print_command_help(const ruga_command* command);

@@ -51,7 +51,8 @@ void ruga_warn_of_handles(const ruga_arguments* arguments, const ruga_model* mod
     double cells = ruga_rows_nearest(&model->rows, &model->lattice, model->handles, pair);
     if (cells < few) {
         ruga_warn(arguments,
-                  "handles[%d] and handles[%d] move differently within %.2g cells of one another, where the lattice has no "
+                  "handles[%d] and handles[%d] move differently within %.2g cells of one another, where the "
+                  "lattice has no "
                   "room to follow both: slow, and stiff; lattice.cells: %d or more would give it",
                   pair[0], pair[1], cells, (int)ceil(model->lattice_def.cells * few / fmax(cells, 1)));
     }
@@ -167,6 +168,18 @@ ruga_status ruga_check_output(const char* path) {
     ruga_status status = check_folder(path, folder);
     ruga_release(folder);
     return status;
+}
+
+ruga_status ruga_make_folder(const char* path) {
+    struct stat info;
+    if (mkdir(path, 0777) != 0 && errno != EEXIST) {
+        return ruga_fail(errno == EACCES || errno == ENOSPC || errno == EROFS ? RUGA_IO : RUGA_BAD_INPUT,
+                         "%s cannot be made: %s", path, strerror(errno));
+    }
+    if (stat(path, &info) != 0 || !S_ISDIR(info.st_mode)) {
+        return ruga_fail(RUGA_BAD_INPUT, "%s is a file; a folder is needed here", path);
+    }
+    return RUGA_OK;
 }
 
 ruga_status ruga_check_mesh_output(const char* path) {

@@ -42,6 +42,8 @@ ruga_status ruga_check_input(const char* path);
 // The same for a place to write to: RUGA_BAD_INPUT where it is a folder or its folder is missing, RUGA_IO
 // where that does not let one write. Found out before any work.
 ruga_status ruga_check_output(const char* path);
+// A folder, where it is missing; that which it is to be in must be there.
+ruga_status ruga_make_folder(const char* path);
 // RUGA_BAD_INPUT where the ending is none that meshes can be written as.
 ruga_status ruga_check_mesh_output(const char* path);
 

@@ -9,9 +9,9 @@
 //   entries of its factor                    min(N^2 / 2, 60 N^(4/3))
 //   a factorisation                          entries^2 / N multiply-adds at 2e9 per second
 //   a coupled frame                          4 factorisations of the interior and 6 static skins
-// A dense volume is factorised section by section: entries unknowns times those of its smallest section, unless
-// nested dissection (60 N^(4/3)) is less; a frame takes about 12 factorisations and 0.4 ms a cell for each.
-// Matrices, their indices (12 bytes an entry, twice) and 30 work vectors come on top.
+// A dense volume is factorised section by section: entries unknowns times those of its smallest section,
+// unless nested dissection (60 N^(4/3)) is less; a frame takes about 12 factorisations and 0.4 ms a cell for
+// each. Matrices, their indices (12 bytes an entry, twice) and 30 work vectors come on top.
 #include "app/estimate.h"
 
 #include <math.h>
@@ -45,7 +45,8 @@ ruga_estimate ruga_estimate_model(const ruga_model* model) {
                          fmin(model->dense.volume.axis[0].count, model->dense.volume.axis[1].count);
         double entries = unknowns * fmin(section, 60 * cbrt(unknowns));
         e.interior_unknowns = 3 * (int64_t)model->dense.volume.node_count;
-        e.seconds_per_frame = 12 * (entries * entries / unknowns / 2e9 + 4e-4 * model->dense.volume.element_count);
+        e.seconds_per_frame =
+            12 * (entries * entries / unknowns / 2e9 + 4e-4 * model->dense.volume.element_count);
         e.bytes = 8 * entries + 48.0 * model->dense.volume.pattern.start[model->dense.volume.pattern.columns];
     }
     e.bytes += (double)model->lattice.vertex_count * model->lattice.nodes_per_element * 16;

@@ -42,6 +42,8 @@ static ruga_status derive(const ruga_arguments* arguments, facts* f) {
     }
     if (def->keyframe_count > 0) {
         f->strain = ruga_motion_largest_compression(def->keyframe_count, def->keyframes);
+    } else if (f->model->follow.count > 0) {
+        f->strain = f->model->follow.compression;
     }
     RUGA_TRY(ruga_quantity(arguments, "--strain", "1", &f->strain));
     if (f->strain < 0 || f->strain >= 1) {
@@ -141,16 +143,17 @@ static void say_creases(const ruga_arguments* arguments, const facts* f) {
         return;
     }
     const ruga_raster* r = &c->raster;
-    ruga_say(arguments, "creases\n    %-28s %d, of %d straight pieces\n", "curves", r->curve_count, c->segment_count);
+    ruga_say(arguments, "creases\n    %-28s %d, of %d straight pieces\n", "curves", r->curve_count,
+             c->segment_count);
     ruga_say(arguments, "    %-28s %d before, %d pieces after; %d vertices, %d nodes\n", "triangles",
              r->mesh.triangle_count, c->cut.piece_count, r->mesh.vertex_count, c->cut.node_count);
     ruga_say(arguments, "    %-28s %d vertices moved, %d edges and %d faces split\n", "mesh mended", r->moved,
              r->split_edges, r->split_faces);
-    ruga_say(arguments, "    %-28s %d, %d redundant ones left out\n", "rows of the sewing", c->sewing.row_count,
-             c->sewing.redundant_rows);
+    ruga_say(arguments, "    %-28s %d, %d redundant ones left out\n", "rows of the sewing",
+             c->sewing.row_count, c->sewing.redundant_rows);
     for (int i = 0; i < r->curve_count && i < LISTED; i++) {
-        ruga_say(arguments, "    %-28s %.4g mm, freedom %s\n", c->law[r->curve[i].label].name, 1e3 * r->facts[i].length,
-                 freedom_of(r, i));
+        ruga_say(arguments, "    %-28s %.4g mm, freedom %s\n", c->law[r->curve[i].label].name,
+                 1e3 * r->facts[i].length, freedom_of(r, i));
     }
     if (r->curve_count > LISTED) {
         ruga_say(arguments, "    and %d more\n", r->curve_count - LISTED);
@@ -195,9 +198,9 @@ static json_t* facts_json(const facts* f) {
         "critical_strain", critical, "strain", ruga_json_number(f->strain), "amplitude",
         ruga_json_number(f->amplitude), "edges_per_wavelength", ruga_json_number(f->edges), "mean_edge",
         ruga_json_number(m->mean_edge), "vertices", m->mesh.vertex_count, "triangles", m->mesh.triangle_count,
-        "clusters", m->seam, "elements", m->lattice.element_count, "superimposed",
-        m->lattice.superimposed, "lattice_nodes", m->lattice.node_count, "degrees_of_freedom", unknowns,
-        "memory_bytes", ruga_json_number(e->bytes), "frames", m->frames, "seconds_per_frame",
+        "clusters", m->seam, "elements", m->lattice.element_count, "superimposed", m->lattice.superimposed,
+        "lattice_nodes", m->lattice.node_count, "degrees_of_freedom", unknowns, "memory_bytes",
+        ruga_json_number(e->bytes), "frames", m->frames, "seconds_per_frame",
         ruga_json_number(e->seconds_per_frame), "seconds", ruga_json_number(e->seconds_per_frame * m->frames),
         "warnings", warnings, "ok", !f->refused);
 }

@@ -10,11 +10,10 @@
 #include <string.h>
 
 const ruga_command* const ruga_commands[] = {
-    &ruga_make_command,    &ruga_check_command,  &ruga_remesh_command,
-    &ruga_explain_command, &ruga_run_command,    &ruga_measure_command,
-    &ruga_export_command,  &ruga_render_command, &ruga_validate_command,
-    &ruga_sweep_command,
-    NULL,
+    &ruga_make_command,     &ruga_check_command,   &ruga_remesh_command, &ruga_explain_command,
+    &ruga_run_command,      &ruga_measure_command, &ruga_export_command, &ruga_bake_command,
+    &ruga_render_command,   &ruga_plot_command,    &ruga_view_command,   &ruga_creases_command,
+    &ruga_validate_command, &ruga_sweep_command,   &ruga_manual_command, NULL,
 };
 
 static int exit_status_of(ruga_status status) {

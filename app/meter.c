@@ -49,8 +49,8 @@ void ruga_meter_stage(ruga_meter* meter, const char* stage, double done) {
     if (left >= 0) {
         ruga_duration(left, duration);
     }
-    (void)fprintf(stderr, "\r\033[K[%s] %d/%d  %s%s%s", bar, meter->frame, meter->frames, stage,
-                  left >= 0 ? "  left " : "", duration);
+    (void)fprintf(stderr, "\r\033[K[%s] %d/%d  %s%s%s%s", bar, meter->frame, meter->frames, stage,
+                  meter->last, left >= 0 ? "  left " : "", duration);
     (void)fflush(stderr);
     meter->drawn = now;
 }
@@ -60,6 +60,8 @@ void ruga_meter_frame(ruga_meter* meter, double time, const ruga_report* report)
     if (meter->frame > 0) {
         meter->recent[meter->recent_count++ % RUGA_METER_RECENT] = report->seconds_total;
     }
+    (void)snprintf(meter->last, sizeof meter->last, "  last: %s, %d steps",
+                   ruga_outcome_name(report->outcome), report->newton_iterations);
     if (meter->quiet || meter->terminal) {
         return;
     }

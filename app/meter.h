@@ -15,6 +15,7 @@ typedef struct ruga_meter {
     double recent[RUGA_METER_RECENT];
     int recent_count; // of all frames timed so far
     double drawn;     // when the bar was last drawn, s
+    char last[48];    // of the last frame: outcome and Newton steps
 } ruga_meter;
 
 ruga_meter ruga_meter_start(bool quiet, int frames);

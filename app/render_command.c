@@ -1,140 +1,147 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// ruga render: pictures of frames.
+// ruga render: pictures of frames, turntables and films.
+#include "app/camera_options.h"
+#include "app/coloring.h"
 #include "app/command.h"
 #include "app/console.h"
 #include "app/frames.h"
-#include "app/measure.h"
 #include "core/memory.h"
+#include "core/vec3.h"
+#include "view/movie.h"
 #include "view/render.h"
 
 #include <math.h>
 
-enum { PIXELS_MAX = 16384, COLOR_CLAY = 0, COLOR_DISPLACEMENT = 1 }; // further ones: what a varying skin has
-static const double DEGREE = 0.017453292519943295;
-static const double ELEVATION_MAX = 1.5533; // 89 deg: straight from above, no side of the picture is up
+enum { PIXELS_MIN = 16, PIXELS_MAX = 16384, PICTURES_MAX = 100000 };
 
 static const ruga_option options[] = {
     {"--frame", "-f", "K", "the frame, counted from 0 [the last]", false},
     {"--frames", NULL, "A:B", "frames, both ends included", false},
     {"--width", NULL, "PIXELS", "width of the picture [1280]", false},
     {"--height", NULL, "PIXELS", "height of the picture [960]", false},
-    {"--color", NULL, "NAME",
-     "clay; displacement: how far the skin stands off the interior; thickness, young or\n"
-     "wavelength of a skin that varies [clay]",
+    {"--color", NULL, RUGA_COLORING_NAMES,
+     "clay; displacement: how far the skin stands off the interior; stress: von Mises'\n"
+     "in the skin; clusters, elements: of the coupling and the lattice; creases: their\n"
+     "fold angles; thickness, young or wavelength of a skin that varies [clay]",
      false},
-    {"--up", NULL, "AXIS", "the axis that points up: x, y or z [z]", false},
-    {"--azimuth", NULL, "ANGLE", "where the camera stands, turned about the up axis [-63 deg]", false},
-    {"--elevation", NULL, "ANGLE", "how far above the horizon the camera stands [34 deg]", false},
-    {"--output", "-o", "PNG", "the file to write; for several frames a name with %04d in it", false},
+    {"--wireframe", NULL, NULL, "draw the edges of the mesh", false},
+    {"--plain", NULL, NULL, "no scale bar and no legend", false},
+    RUGA_CAMERA_OPTIONS,
+    {"--turntable", NULL, "N", "N pictures with the camera once around; several frames play meanwhile",
+     false},
+    {"--movie", NULL, "FILE.mp4", "a film, of all frames unless told; needs the program ffmpeg", false},
+    {"--fps", NULL, "N", "pictures of the film in a second [those of the scene's time, from 5 to 60]", false},
+    {"--threads", NULL, "N", "threads; the picture does not depend on it [all cores]", false},
+    {"--output", "-o", "PNG", "the file to write; for several pictures a name with %04d in it", false},
     {0},
 };
 
 typedef struct job {
     const ruga_arguments* arguments;
     ruga_result_reader* reader;
-    const char* pattern;
+    ruga_frame_range range;
+    int count; // of pictures
+    bool turntable;
+    const char *pattern, *film;
+    ruga_movie* movie;
+    double azimuth; // of the first picture
     ruga_render_def def;
-    ruga_measure* measure; // where coloured by displacement
+    ruga_extent extent;
+    ruga_coloring coloring;
     double *position, *embedded;
 } job;
 
-static ruga_status read_frame(job* j, int frame) {
+static ruga_status read_size(job* j) {
+    j->def.width = 1280;
+    j->def.height = 960;
+    RUGA_TRY(ruga_integer(j->arguments, "--width", PIXELS_MIN, PIXELS_MAX, &j->def.width));
+    return ruga_integer(j->arguments, "--height", PIXELS_MIN, PIXELS_MAX, &j->def.height);
+}
+
+// What can be refused before the result is read.
+static ruga_status read_options(job* j) {
+    const ruga_arguments* a = j->arguments;
+    int threads = 0;
+    j->film = ruga_value(a, "--movie");
+    j->pattern = ruga_value(a, "--output");
+    if (!j->film) {
+        RUGA_TRY(ruga_required(a, "--output", &j->pattern));
+    }
+    if (j->pattern) {
+        RUGA_TRY(ruga_check_output(j->pattern));
+    }
+    if (j->film) {
+        RUGA_TRY(ruga_check_output(j->film));
+    }
+    RUGA_TRY(ruga_integer(a, "--turntable", 1, PICTURES_MAX, &j->count));
+    j->turntable = j->count > 0;
+    RUGA_TRY(ruga_integer(a, "--threads", 1, 1024, &threads));
+    ruga_set_threads(threads);
+    j->def.wireframe = ruga_given(a, "--wireframe");
+    j->def.scale_bar = !ruga_given(a, "--plain");
+    j->def.turns = j->turntable;
+    return read_size(j);
+}
+
+static ruga_status choose_pictures(job* j) {
+    RUGA_TRY(ruga_open_result(ruga_operand(j->arguments), &j->reader));
+    bool all = !j->turntable && (j->film || ruga_has_pattern(j->pattern));
+    RUGA_TRY(ruga_choose_frames(j->arguments, ruga_result_frame_count(j->reader), all, &j->range));
+    ruga_frame_range numbers = j->turntable ? (ruga_frame_range){0, j->count - 1} : j->range;
+    j->count = numbers.last - numbers.first + 1;
+    return j->pattern ? ruga_check_pattern(j->pattern, &numbers) : RUGA_OK;
+}
+
+static void tell_scale(const job* j) {
+    const ruga_scale* s = &j->coloring.scale;
+    if (s->name && s->max > s->min) {
+        ruga_say(j->arguments, "colours from %.4g to %.4g: %s\n", s->min / s->unit, s->max / s->unit,
+                 s->name);
+    } else if (j->coloring.note[0]) {
+        ruga_say(j->arguments, "%s\n", j->coloring.note);
+    }
+}
+
+static ruga_status prepare(job* j) {
+    int color = RUGA_COLORING_CLAY, vertices = ruga_result_mesh(j->reader)->vertex_count;
+    RUGA_TRY(ruga_option_choice(j->arguments, "--color", RUGA_COLORING_NAMES, &color));
+    RUGA_TRY(ruga_camera_options(j->arguments, ruga_result_reader_header(j->reader)->scene_text, &j->def));
+    j->azimuth = j->def.azimuth;
+    RUGA_TRY(RUGA_NEW(j->position, 3 * (size_t)vertices));
+    RUGA_TRY(RUGA_NEW(j->embedded, 3 * (size_t)vertices));
     RUGA_TRY(
-        ruga_result_read_frame(j->reader, frame, NULL, j->position, j->measure ? j->embedded : NULL, NULL));
-    ruga_measured unused;
-    return j->measure ? ruga_measure_frame(j->measure, j->position, j->embedded, &unused) : RUGA_OK;
-}
-
-// One scale, symmetric about zero, for all frames of a film.
-static ruga_status choose_scale(job* j, const ruga_frame_range* range) {
-    double largest = 0;
-    for (int frame = range->first; frame <= range->last; frame++) {
-        RUGA_TRY(read_frame(j, frame));
-        const double* w = ruga_measure_displacement(j->measure);
-        for (int v = 0; v < ruga_result_mesh(j->reader)->vertex_count; v++) {
-            largest = fmax(largest, fabs(w[v]));
-        }
-    }
-    j->def.scalar = ruga_measure_displacement(j->measure);
-    j->def.scalar_max = largest > 0 ? largest : 1e-6;
-    j->def.scalar_min = -j->def.scalar_max;
-    ruga_say(j->arguments, "colours from %.3g mm to %.3g mm\n", 1e3 * j->def.scalar_min,
-             1e3 * j->def.scalar_max);
+        ruga_coloring_create(ruga_operand(j->arguments), j->reader, (ruga_coloring_kind)color, &j->coloring));
+    RUGA_TRY(ruga_coloring_scan(&j->coloring, &j->range, &j->extent));
+    j->def.extent = &j->extent;
+    tell_scale(j);
     return RUGA_OK;
 }
 
-// Colours by a value of the skin at the vertices; `color` is its place among the choices.
-static ruga_status choose_value(job* j, int color) {
-    static const char* const names[] = {"thickness", "Young's modulus", "wavelength"};
-    static const char* const units[] = {"m", "Pa", "m"};
-    const ruga_result_header* header = ruga_result_reader_header(j->reader);
-    const double* const values[] = {header->vertex_thickness, header->vertex_young,
-                                    header->vertex_wavelength};
-    int which = color - COLOR_DISPLACEMENT - 1;
-    if (!values[which]) {
-        return ruga_fail(RUGA_BAD_INPUT, "--color: the %s of the skin in %s does not vary", names[which],
-                         ruga_operand(j->arguments));
+// Frames of the scene's own time, at most 60 and at least 5 in a second.
+static ruga_status open_movie(job* j) {
+    double first, last, rate = 25;
+    RUGA_TRY(ruga_result_read_frame(j->reader, j->range.first, &first, NULL, NULL, NULL));
+    RUGA_TRY(ruga_result_read_frame(j->reader, j->range.last, &last, NULL, NULL, NULL));
+    if (!j->turntable && last > first) {
+        rate = fmin(fmax((j->range.last - j->range.first) / (last - first), 5), 60);
     }
-    j->def.scalar = values[which];
-    j->def.scalar_min = INFINITY;
-    j->def.scalar_max = -INFINITY;
-    for (int v = 0; v < ruga_result_mesh(j->reader)->vertex_count; v++) {
-        j->def.scalar_min = fmin(j->def.scalar_min, values[which][v]);
-        j->def.scalar_max = fmax(j->def.scalar_max, values[which][v]);
-    }
-    ruga_say(j->arguments, "colours from %.4g %s to %.4g %s\n", j->def.scalar_min, units[which],
-             j->def.scalar_max, units[which]);
-    return RUGA_OK;
+    int given = 0;
+    RUGA_TRY(ruga_integer(j->arguments, "--fps", 1, 1000, &given));
+    return ruga_movie_open(j->film, j->def.width, j->def.height, given > 0 ? given : rate, &j->movie);
 }
 
-static ruga_status choose_camera(job* j) {
-    int up = 2;
-    RUGA_TRY(ruga_option_choice(j->arguments, "--up", "x|y|z", &up));
-    for (int i = 0; i < 3; i++) {
-        j->def.up[i] = i == up;
+static ruga_status put(job* j, int number, const ruga_picture* picture) {
+    char* path = NULL;
+    if (j->movie) {
+        RUGA_TRY(ruga_movie_add(j->movie, picture));
     }
-    RUGA_TRY(ruga_quantity(j->arguments, "--azimuth", "rad", &j->def.azimuth));
-    RUGA_TRY(ruga_quantity(j->arguments, "--elevation", "rad", &j->def.elevation));
-    if (!(fabs(j->def.elevation) < ELEVATION_MAX)) {
-        return ruga_fail(RUGA_BAD_INPUT, "--elevation: %g deg is not between -89 and 89 deg",
-                         j->def.elevation / DEGREE);
-    }
-    return RUGA_OK;
-}
-
-static ruga_status prepare(job* j, const ruga_frame_range* range) {
-    int color = COLOR_CLAY;
-    RUGA_TRY(choose_camera(j));
-    RUGA_TRY(ruga_integer(j->arguments, "--width", 16, PIXELS_MAX, &j->def.width));
-    RUGA_TRY(ruga_integer(j->arguments, "--height", 16, PIXELS_MAX, &j->def.height));
-    RUGA_TRY(
-        ruga_option_choice(j->arguments, "--color", "clay|displacement|thickness|young|wavelength", &color));
-    const ruga_mesh* mesh = ruga_result_mesh(j->reader);
-    const ruga_result_header* header = ruga_result_reader_header(j->reader);
-    RUGA_TRY(RUGA_NEW(j->position, 3 * (size_t)mesh->vertex_count));
-    RUGA_TRY(RUGA_NEW(j->embedded, 3 * (size_t)mesh->vertex_count));
-    if (color == COLOR_CLAY) {
+    if (!j->pattern) {
         return RUGA_OK;
     }
-    if (color > COLOR_DISPLACEMENT) {
-        return choose_value(j, color);
-    }
-    if (!ruga_result_has_interior(j->reader)) {
-        return ruga_fail(RUGA_BAD_INPUT, "--color displacement: %s has no interior to measure from",
-                         ruga_operand(j->arguments));
-    }
-    RUGA_TRY(ruga_measure_create_local(mesh, header->wavelength, header->vertex_wavelength, header->seed,
-                                       &j->measure));
-    return choose_scale(j, range);
-}
-
-static ruga_status render_frame(job* j, int frame) {
-    char* path = NULL;
-    RUGA_TRY(read_frame(j, frame));
-    RUGA_TRY(ruga_frame_path(j->pattern, frame, &path));
-    ruga_status status = ruga_render_png(ruga_result_mesh(j->reader), j->position, &j->def, path);
+    RUGA_TRY(ruga_frame_path(j->pattern, number, &path));
+    ruga_status status = ruga_picture_write(picture, path);
     if (status == RUGA_OK) {
         ruga_say(j->arguments, "%s\n", path);
     }
@@ -142,21 +149,47 @@ static ruga_status render_frame(job* j, int frame) {
     return status;
 }
 
+// Picture i of all: of the next frame, or of the frame that a turntable has come to.
+static ruga_status draw(job* j, int i) {
+    int frames = j->range.last - j->range.first + 1;
+    int frame = j->range.first + (j->turntable ? (int)((int64_t)i * frames / j->count) : i);
+    double* embedded = ruga_coloring_needs_embedded(&j->coloring) ? j->embedded : NULL;
+    ruga_picture picture;
+    if (j->turntable) {
+        j->def.azimuth = j->azimuth + 2 * RUGA_PI * i / j->count;
+    }
+    RUGA_TRY(ruga_result_read_frame(j->reader, frame, NULL, j->position, embedded, NULL));
+    RUGA_TRY(ruga_coloring_set(&j->coloring, frame, j->position, embedded, &j->def));
+    if (!j->def.scale_bar) {
+        j->def.scalar.name = j->def.lines.name = j->def.note = NULL;
+    }
+    RUGA_TRY(ruga_render(ruga_result_mesh(j->reader), j->position, &j->def, &picture));
+    ruga_status status = put(j, j->turntable ? i : frame, &picture);
+    ruga_picture_clear(&picture);
+    return status;
+}
+
 static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     (void)exit_status;
     ruga_status status = RUGA_OK;
-    ruga_frame_range range;
     job j = {.arguments = arguments, .def = ruga_default_render_def()};
-    RUGA_TRY(ruga_required(arguments, "--output", &j.pattern));
-    RUGA_TRY_DONE(ruga_open_frames(arguments, j.pattern, &j.reader, &range));
-    j.def.width = 1280;
-    j.def.height = 960;
-    RUGA_TRY_DONE(prepare(&j, &range));
-    for (int frame = range.first; frame <= range.last; frame++) {
-        RUGA_TRY_DONE(render_frame(&j, frame));
+    RUGA_TRY(read_options(&j));
+    RUGA_TRY_DONE(choose_pictures(&j));
+    RUGA_TRY_DONE(prepare(&j));
+    if (j.film) {
+        RUGA_TRY_DONE(open_movie(&j));
+    }
+    for (int i = 0; i < j.count; i++) {
+        RUGA_TRY_DONE(draw(&j, i));
     }
 done:
-    ruga_measure_destroy(&j.measure);
+    if (j.movie) {
+        status = ruga_movie_close(&j.movie, status);
+        if (status == RUGA_OK) {
+            ruga_say(arguments, "%s\n", j.film);
+        }
+    }
+    ruga_coloring_clear(&j.coloring);
     ruga_release(j.position);
     ruga_release(j.embedded);
     ruga_result_reader_close(&j.reader);
@@ -166,11 +199,15 @@ done:
 const ruga_command ruga_render_command = {
     .name = "render",
     .operand = "RESULT",
-    .usage = "[--frame K | --frames A:B] [--width W] [--height H] [--color NAME] [--up AXIS] -o PNG_OR_PATTERN",
-    .summary = "draw frames of a result as PNG pictures",
-    .about = "Draws the skin. For several frames the file's name holds a place for the number, such as "
+    .usage =
+        "[--frame K | --frames A:B] [--color NAME] [--camera PLACE] [--width W] [--height H] [--wireframe]\n"
+        "                   [--turntable N] [--movie FILE.mp4] [-o PNG_OR_PATTERN]",
+    .summary = "draw frames of a result as PNG pictures or as a film",
+    .about = "Draws the skin. For several pictures the file's name holds a place for the number, such as "
              "f_%04d.png;\n"
-             "a name with such a place and no frames given means all of them.",
+             "a name with such a place and no frames given means all of them. All frames share one camera "
+             "and one\n"
+             "scale of colours. The scale bar is true in the middle of what is seen.",
     .example = "    ruga render pillow.h5 --frame 50 --color displacement -o pillow.png",
     .options = options,
     .run = run,

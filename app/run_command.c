@@ -9,6 +9,7 @@
 #include "app/frames.h"
 #include "app/interrupt.h"
 #include "app/meter.h"
+#include "app/preview.h"
 #include "core/memory.h"
 #include "core/progress.h"
 #include "io/result.h"
@@ -28,6 +29,7 @@ static const ruga_option options[] = {
      "replace a value of the scene, such as skin.thickness=1mm; may be given\n"
      "several times",
      true},
+    {"--preview", NULL, "DIR", "write a small picture of each frame, DIR/frame_%04d.png, as it comes", false},
     {"--json", "-j", NULL, "print the summary as one JSON object", false},
     {0},
 };
@@ -44,6 +46,7 @@ typedef struct job {
     double *restart, *force;
     ruga_crease_table creases;
     ruga_meter meter;
+    ruga_preview preview;
     bool continues;             // RESULT has frames that stay
     int whole;                  // the last whole frame in RESULT; -1 = none
     int outcomes[OUTCOMES];     // frames of each, those of earlier runs included
@@ -142,6 +145,17 @@ static void warn_of_coarse_mesh(const job* j) {
     }
 }
 
+static void warn_of_loose_fit(const job* j) {
+    const ruga_follow* follow = &j->model->follow;
+    if (follow->count > 0 && follow->error > 0.02 * j->model->extent) {
+        ruga_warn(
+            j->arguments,
+            "the lattice follows the moving surface to within %.3g mm (root mean square); more lattice.cells "
+            "follow it closer",
+            1e3 * follow->error);
+    }
+}
+
 static ruga_status open_result(job* j) {
     const ruga_model* model = j->model;
     ruga_result_header header = {
@@ -197,6 +211,12 @@ static ruga_status write_frame(job* j, const ruga_report* report) {
     j->whole = ruga_state_frame(j->state);
     count_outcome(j, report->outcome);
     ruga_meter_frame(&j->meter, frame.time, report);
+    // A picture that cannot be written is no reason to end a long run.
+    if (ruga_preview_frame(&j->preview, &j->scene.mesh, j->whole, frame.position) != RUGA_OK) {
+        ruga_meter_erase(&j->meter);
+        ruga_warn(j->arguments, "no more previews: %s", ruga_last_error());
+        ruga_preview_clear(&j->preview);
+    }
     return RUGA_OK;
 }
 
@@ -205,6 +225,7 @@ static ruga_status simulate(job* j) {
     int frames = j->scene.def.frames;
     RUGA_TRY(ruga_model_create(&j->scene.def, &j->model));
     warn_of_coarse_mesh(j);
+    warn_of_loose_fit(j);
     ruga_warn_of_handles(j->arguments, j->model);
     RUGA_TRY(ruga_state_create(j->model, &j->state));
     RUGA_TRY(open_result(j));
@@ -252,8 +273,8 @@ static void tell_how_to_resume(const job* j) {
     (void)fputs(" -o", stderr);
     complain_word(j->path);
     (void)fputs(" --resume", stderr);
-    static const char* const kept[] = {"--frames", "--threads", "--set"};
-    for (int k = 0; k < 3; k++) {
+    static const char* const kept[] = {"--frames", "--threads", "--preview", "--set"};
+    for (int k = 0; k < 4; k++) {
         int count;
         const char* const* values = ruga_values(j->arguments, kept[k], &count);
         for (int i = 0; i < count; i++) {
@@ -303,6 +324,7 @@ static ruga_status finish(job* j, ruga_status status, int* exit_status) {
 }
 
 static void clear(job* j) {
+    ruga_preview_clear(&j->preview);
     ruga_release(j->restart);
     ruga_release(j->force);
     ruga_crease_table_clear(&j->creases);
@@ -322,6 +344,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     ruga_set_threads(threads);
     RUGA_TRY_DONE(read_scene(&j));
     ruga_warn_of_scene(arguments, &j.scene);
+    RUGA_TRY_DONE(ruga_preview_start(ruga_value(arguments, "--preview"), &j.scene, &j.preview));
     RUGA_TRY_DONE(look_at_result(&j));
     if (j.whole >= j.scene.def.frames) {
         ruga_say(arguments, ruga_given(arguments, "--json") ? "" : "%s is complete: nothing is left to do\n",
@@ -341,7 +364,8 @@ done:
 const ruga_command ruga_run_command = {
     .name = "run",
     .operand = "SCENE",
-    .usage = "-o RESULT.h5 [--frames N] [--resume | --force] [--threads N] [--set key.path=value] [--quiet]",
+    .usage = "-o RESULT.h5 [--frames N] [--resume | --force] [--threads N] [--set key.path=value]\n"
+             "                [--preview DIR] [--quiet]",
     .summary = "simulate a scene",
     .about =
         "Writes frame 0, the start state, and then as many frames as the scene or --frames says. The file "

@@ -32,25 +32,13 @@ typedef struct count_of {
     int minimum, not_minimum, failed, waiting;
 } count_of;
 
-static ruga_status make_folder(const char* path) {
-    struct stat info;
-    if (mkdir(path, 0777) != 0 && errno != EEXIST) {
-        return ruga_fail(errno == EACCES || errno == ENOSPC || errno == EROFS ? RUGA_IO : RUGA_BAD_INPUT,
-                         "%s cannot be made: %s", path, strerror(errno));
-    }
-    if (stat(path, &info) != 0 || !S_ISDIR(info.st_mode)) {
-        return ruga_fail(RUGA_BAD_INPUT, "%s is a file; a folder is needed here", path);
-    }
-    return RUGA_OK;
-}
-
 static ruga_status make_folders(const char* directory) {
     char points[PATH_LENGTH];
     if (snprintf(points, sizeof points, "%s/points", directory) >= PATH_LENGTH - 64) {
         return ruga_fail(RUGA_BAD_INPUT, "the path of the folder is too long");
     }
-    RUGA_TRY(make_folder(directory));
-    return make_folder(points);
+    RUGA_TRY(ruga_make_folder(directory));
+    return ruga_make_folder(points);
 }
 
 static void say_plan(const ruga_arguments* arguments, const ruga_sweep* sweep, int complete, int jobs) {

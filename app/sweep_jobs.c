@@ -53,7 +53,7 @@ static void add_scalars(json_t* row, const char* prefix, json_t* object) {
 static ruga_status read_result(ruga_sweep_point* point, bool* complete) {
     ruga_status status = RUGA_OK;
     ruga_result_reader* reader = NULL;
-    ruga_measurement m;
+    ruga_measurement m = {0};
     double seconds = 0;
     int frames, bad = 0;
     *complete = false;
@@ -83,6 +83,7 @@ static ruga_status read_result(ruga_sweep_point* point, bool* complete) {
     point->exit_status = bad > 0 ? RUGA_EXIT_NOT_CONVERGED : RUGA_EXIT_DONE;
     *complete = true;
 done:
+    ruga_measurement_clear(&m);
     ruga_result_reader_close(&reader);
     return status;
 }

@@ -15,8 +15,8 @@ static const ruga_option options[] = {
     {"--quick", NULL, NULL, "the small forms of the quick cases: under three minutes", false},
     {"--case", "-c", "NAME", "this case only; may be given several times", true},
     {"--list", "-l", NULL, "list the cases and run none", false},
-    {"--output", "-o", "DIR", "where the report and its pictures go; made where it is missing [validation-report]",
-     false},
+    {"--output", "-o", "DIR",
+     "where the report and its pictures go; made where it is missing [validation-report]", false},
     {"--json", "-j", NULL, "print one JSON object with all lines", false},
     {0},
 };
@@ -63,7 +63,8 @@ static ruga_status make_output(const char* directory) {
     return RUGA_OK;
 }
 
-static ruga_status run_cases(const ruga_arguments* arguments, const ruga_validation_settings* settings, int* failed) {
+static ruga_status run_cases(const ruga_arguments* arguments, const ruga_validation_settings* settings,
+                             int* failed) {
     for (int i = 0; ruga_validation_cases[i]; i++) {
         if (is_chosen(arguments, ruga_validation_cases[i])) {
             int here;
@@ -86,8 +87,8 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     RUGA_TRY(check_names(arguments));
     if (ruga_given(arguments, "--list")) {
         for (int i = 0; ruga_validation_cases[i]; i++) {
-            ruga_say(arguments, "%-16s%s%s\n", ruga_validation_cases[i]->name, ruga_validation_cases[i]->title,
-                     ruga_validation_cases[i]->quick ? " (quick)" : "");
+            ruga_say(arguments, "%-16s%s%s\n", ruga_validation_cases[i]->name,
+                     ruga_validation_cases[i]->title, ruga_validation_cases[i]->quick ? " (quick)" : "");
         }
         return RUGA_OK;
     }
@@ -110,7 +111,8 @@ const ruga_command ruga_validate_command = {
     .name = "validate",
     .usage = "[--quick] [--case NAME] [-o DIR] [--json]",
     .summary = "hold Ruga against theory, published figures and other programs",
-    .about = "Runs the validation suite and writes DIR/validation.md with tables and pictures. Cases that were run\n"
+    .about = "Runs the validation suite and writes DIR/validation.md with tables and pictures. Cases that "
+             "were run\n"
              "before into the same folder stay in the report. Exit status 1 where a line fails.",
     .example = "    ruga validate --case sheet -o report",
     .options = options,

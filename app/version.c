@@ -33,6 +33,7 @@ void ruga_print_version(void) {
     (void)printf("OpenBLAS %.*s\n", (int)strcspn(blas ? blas : "", " "), blas ? blas : "");
     (void)printf("ARPACK-NG, UDUNITS-2\n");
     (void)printf("Embree %s\n", RUGA_EMBREE_VERSION);
+    (void)printf("OpenEXR %s\n", RUGA_OPENEXR_VERSION);
     (void)printf("libyaml %s\n", yaml_get_version_string());
     (void)printf("jansson %s\n", JANSSON_VERSION);
     (void)printf("libpng %s\n", PNG_LIBPNG_VER_STRING);

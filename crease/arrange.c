@@ -6,11 +6,8 @@
 // changes:
 //   vertices within `weld` become the first of them; lines without length go; of lines with the same ends one
 //   is kept, a border or a cut before others; lines are split at vertices that lie on them and at crossings.
-// Pairs are found by sweeping along x. Then faces: lines that end in the open are set aside, and so are
-// islands (faces cannot have holes); the rest is walked around, at each vertex to the next line clockwise, so
-// that faces run counter-clockwise and only the outside runs the other way. Lines along the outside are the
-// border.
-#include "crease/pattern.h"
+// Pairs are found by sweeping along x. The faces are those of crease/faces.c.
+#include "crease/faces.h"
 
 #include "core/memory.h"
 #include "core/vec3.h"
@@ -318,193 +315,6 @@ static ruga_status arrange_lines(arranger* a) {
         "the crease pattern does not settle: its lines are closer than %.3g m in too many places", a->weld);
 }
 
-// ------------------------------------------------------------------------------- faces
-
-// Half-edge 2 e runs from vertex[0] to vertex[1], 2 e + 1 back.
-typedef struct walker {
-    ruga_crease_pattern* pattern;
-    bool* aside; // [E] ends in the open, or belongs to an island
-    int* degree; // [V]
-    int* set;    // [V]
-    int* next;   // [2 E]
-    bool* seen;  // [2 E]
-} walker;
-
-static int half_from(const ruga_crease_pattern* p, int half) {
-    return p->edge[half / 2].vertex[half % 2];
-}
-
-static ruga_status set_dangling_aside(walker* w) {
-    ruga_crease_pattern* p = w->pattern;
-    int count = 0;
-    for (int e = 0; e < p->edge_count; e++) {
-        w->degree[p->edge[e].vertex[0]]++;
-        w->degree[p->edge[e].vertex[1]]++;
-    }
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (int e = 0; e < p->edge_count; e++) {
-            const int* v = p->edge[e].vertex;
-            if (!w->aside[e] && (w->degree[v[0]] == 1 || w->degree[v[1]] == 1)) {
-                w->aside[e] = changed = true;
-                w->degree[v[0]]--;
-                w->degree[v[1]]--;
-                count++;
-            }
-        }
-    }
-    return count == 0 ? RUGA_OK
-                      : ruga_crease_pattern_note(
-                            p, "%d lines end within a face: they are creases, but divide no face", count);
-}
-
-// All but the connected set of lines with the largest extent along x and y.
-static ruga_status set_islands_aside(walker* w) {
-    ruga_crease_pattern* p = w->pattern;
-    double(*box)[4] = NULL;
-    RUGA_TRY(RUGA_NEW(box, p->vertex_count));
-    ruga_sets_reset(w->set, p->vertex_count);
-    for (int e = 0; e < p->edge_count; e++) {
-        if (!w->aside[e]) {
-            ruga_sets_unite(w->set, p->edge[e].vertex[0], p->edge[e].vertex[1]);
-        }
-    }
-    int main_set = -1, islands = 0, example = -1;
-    double largest = -1;
-    for (int v = 0; v < p->vertex_count; v++) {
-        int root = ruga_sets_find(w->set, v);
-        const double* x = p->position[v];
-        double* b = box[root];
-        if (root == v) {
-            memcpy(b, (const double[4]){x[0], x[1], x[0], x[1]}, sizeof *box);
-        }
-        b[0] = fmin(b[0], x[0]);
-        b[1] = fmin(b[1], x[1]);
-        b[2] = fmax(b[2], x[0]);
-        b[3] = fmax(b[3], x[1]);
-        double size = b[2] - b[0] + b[3] - b[1];
-        if (size > largest) {
-            largest = size;
-            main_set = root;
-        }
-    }
-    for (int e = 0; e < p->edge_count; e++) {
-        if (!w->aside[e] && ruga_sets_find(w->set, p->edge[e].vertex[0]) != main_set) {
-            w->aside[e] = true;
-            islands++;
-            example = p->edge[e].vertex[0];
-        }
-    }
-    ruga_release(box);
-    return islands == 0 ? RUGA_OK
-                        : ruga_crease_pattern_note(
-                              p,
-                              "%d lines, near (%.6g, %.6g), are joined to no border: they are creases, but "
-                              "divide no face",
-                              islands, p->position[example][0], p->position[example][1]);
-}
-
-typedef struct spoke {
-    int vertex, half;
-    double angle;
-} spoke;
-
-static int compare_spokes(const void* a, const void* b) {
-    const spoke *p = a, *q = b;
-    if (p->vertex != q->vertex) {
-        return p->vertex < q->vertex ? -1 : 1;
-    }
-    return p->angle < q->angle ? -1 : p->angle > q->angle ? 1 : p->half < q->half ? -1 : p->half > q->half;
-}
-
-// next[half]: behind half's end, the line clockwise from the way back.
-static ruga_status link_halves(walker* w) {
-    ruga_crease_pattern* p = w->pattern;
-    spoke* list = NULL;
-    int count = 0;
-    RUGA_TRY(RUGA_NEW(list, 2 * (size_t)p->edge_count));
-    for (int half = 0; half < 2 * p->edge_count; half++) {
-        if (!w->aside[half / 2]) {
-            const double *a = p->position[half_from(p, half)], *b = p->position[half_from(p, half ^ 1)];
-            list[count++] = (spoke){half_from(p, half), half, atan2(b[1] - a[1], b[0] - a[0])};
-        }
-    }
-    if (count > 1) {
-        qsort(list, (size_t)count, sizeof *list, compare_spokes);
-    }
-    for (int i = 0, end; i < count; i = end) {
-        for (end = i; end < count && list[end].vertex == list[i].vertex;) {
-            end++;
-        }
-        for (int k = i; k < end; k++) {
-            w->next[list[k].half ^ 1] = list[k == i ? end - 1 : k - 1].half;
-        }
-    }
-    ruga_release(list);
-    return RUGA_OK;
-}
-
-// Walks around the face on the left of a half-edge; its area is positive but for the outside.
-static ruga_status walk_face(walker* w, int first) {
-    ruga_crease_pattern* p = w->pattern;
-    double area = 0;
-    int half = first;
-    do {
-        const double *a = p->position[half_from(p, half)], *b = p->position[half_from(p, half ^ 1)];
-        area += a[0] * b[1] - a[1] * b[0];
-        w->seen[half] = true;
-        half = w->next[half];
-    } while (half != first);
-    if (area <= 0) {
-        int unmarked = 0;
-        do {
-            ruga_crease_pattern_edge* edge = &p->edge[half / 2];
-            unmarked += edge->assignment != RUGA_ASSIGNMENT_BORDER;
-            edge->assignment = RUGA_ASSIGNMENT_BORDER;
-            edge->angle = NAN;
-            half = w->next[half];
-        } while (half != first);
-        return unmarked == 0
-                   ? RUGA_OK
-                   : ruga_crease_pattern_note(p, "%d lines along the outline are its border now", unmarked);
-    }
-    RUGA_TRY(ruga_crease_pattern_add_face(p));
-    do {
-        RUGA_TRY(ruga_crease_pattern_add_corner(p, half_from(p, half)));
-        half = w->next[half];
-    } while (half != first);
-    return RUGA_OK;
-}
-
-static ruga_status find_faces(ruga_crease_pattern* p) {
-    ruga_status status = RUGA_OK;
-    walker w = {.pattern = p};
-    p->face_count = p->corner_count = 0;
-    RUGA_TRY_DONE(RUGA_NEW_ZERO(w.aside, p->edge_count));
-    RUGA_TRY_DONE(RUGA_NEW_ZERO(w.degree, p->vertex_count));
-    RUGA_TRY_DONE(RUGA_NEW(w.set, p->vertex_count));
-    RUGA_TRY_DONE(RUGA_NEW(w.next, 2 * (size_t)p->edge_count));
-    RUGA_TRY_DONE(RUGA_NEW_ZERO(w.seen, 2 * (size_t)p->edge_count));
-    RUGA_TRY_DONE(set_dangling_aside(&w));
-    RUGA_TRY_DONE(set_islands_aside(&w));
-    RUGA_TRY_DONE(link_halves(&w));
-    for (int half = 0; half < 2 * p->edge_count; half++) {
-        if (!w.aside[half / 2] && !w.seen[half]) {
-            RUGA_TRY_DONE(walk_face(&w, half));
-        }
-    }
-    if (p->face_count == 0) {
-        status = ruga_fail(RUGA_BAD_INPUT, "the crease pattern has no closed outline: draw its border");
-    }
-done:
-    ruga_release(w.aside);
-    ruga_release(w.degree);
-    ruga_release(w.set);
-    ruga_release(w.next);
-    ruga_release(w.seen);
-    return status;
-}
-
 static ruga_status note_repairs(arranger* a) {
     ruga_crease_pattern* p = a->pattern;
     const struct {
@@ -531,8 +341,12 @@ ruga_status ruga_crease_pattern_arrange(ruga_crease_pattern* pattern, double wel
     RUGA_TRY_DONE(note_repairs(&a));
     bool changed =
         a.welded + a.dropped + a.doubled + a.crossings + a.touching > 0 || pattern->vertex_count != vertices;
-    if (changed || pattern->face_count == 0) {
-        RUGA_TRY_DONE(find_faces(pattern));
+    bool complete = false;
+    if (!changed && pattern->face_count > 0) {
+        RUGA_TRY_DONE(ruga_crease_pattern_mark_rims(pattern, &complete));
+    }
+    if (!complete) {
+        RUGA_TRY_DONE(ruga_crease_pattern_find_faces(pattern));
     }
 done:
     ruga_release(a.cut);

@@ -42,7 +42,7 @@ ruga_status ruga_crease_pattern_add_vertex(ruga_crease_pattern* p, const double 
 ruga_status ruga_crease_pattern_add_edge(ruga_crease_pattern* p, int a, int b, ruga_assignment assignment,
                                          double angle) {
     RUGA_TRY(RUGA_RESERVE(p->edge, p->edge_capacity, (size_t)p->edge_count + 1));
-    p->edge[p->edge_count++] = (ruga_crease_pattern_edge){{a, b}, assignment, angle};
+    p->edge[p->edge_count++] = (ruga_crease_pattern_edge){{a, b}, assignment, angle, false};
     return RUGA_OK;
 }
 
@@ -185,5 +185,48 @@ done:
     ruga_release(c.around);
     ruga_release(c.done);
     ruga_release(c.path);
+    return status;
+}
+
+ruga_status ruga_crease_pattern_add_curves(ruga_crease_pattern* pattern, const ruga_curves* curves) {
+    for (int k = 0; k < curves->count; k++) {
+        const ruga_curve* c = &curves->curve[k];
+        int first = pattern->vertex_count;
+        for (int i = 0; i < c->point_count; i++) {
+            RUGA_TRY(ruga_crease_pattern_add_vertex(pattern, c->point[i]));
+        }
+        for (int i = c->closed ? 0 : 1; i < c->point_count; i++) {
+            int before = first + (i > 0 ? i - 1 : c->point_count - 1);
+            RUGA_TRY(
+                ruga_crease_pattern_add_edge(pattern, before, first + i, (ruga_assignment)c->label, NAN));
+        }
+    }
+    return RUGA_OK;
+}
+
+ruga_status ruga_crease_pattern_add_boundary(ruga_crease_pattern* pattern, const ruga_mesh* mesh) {
+    ruga_status status = RUGA_OK;
+    ruga_connectivity edges = {0};
+    int* number = NULL;
+    RUGA_TRY_DONE(ruga_connectivity_create(mesh, &edges));
+    RUGA_TRY_DONE(RUGA_NEW(number, mesh->vertex_count));
+    memset(number, -1, (size_t)mesh->vertex_count * sizeof *number);
+    for (int e = 0; e < edges.edge_count; e++) {
+        const int* end = edges.edge[e];
+        if (edges.edge_triangle[e][0] >= 0 && edges.edge_triangle[e][1] >= 0) {
+            continue;
+        }
+        for (int k = 0; k < 2; k++) {
+            if (number[end[k]] < 0) {
+                number[end[k]] = pattern->vertex_count;
+                RUGA_TRY_DONE(ruga_crease_pattern_add_vertex(pattern, mesh->position + 3 * (size_t)end[k]));
+            }
+        }
+        RUGA_TRY_DONE(ruga_crease_pattern_add_edge(pattern, number[end[0]], number[end[1]],
+                                                   RUGA_ASSIGNMENT_BORDER, NAN));
+    }
+done:
+    ruga_connectivity_clear(&edges);
+    ruga_release(number);
     return status;
 }

@@ -21,6 +21,7 @@ typedef struct ruga_crease_pattern_edge {
     int vertex[2];
     ruga_assignment assignment;
     double angle; // rad, positive for a valley; NAN = not given
+    bool rim;     // of a flat pattern that was arranged: there is paper on one side only
 } ruga_crease_pattern_edge;
 
 typedef struct ruga_crease_pattern {
@@ -55,12 +56,17 @@ double ruga_crease_pattern_rest(const ruga_crease_pattern_edge* edge);
 
 // Makes a planar arrangement of a flat pattern: vertices within `weld` (m) become one, lines are split where
 // they cross and where vertices lie on them, lines on top of one another become one; faces are found anew if
-// anything changed or if there are none. Every repair is noted. RUGA_BAD_INPUT where no face is left.
+// anything changed, or if there are none or one is missing. Borders around a place within the sheet make a
+// hole. Every repair is noted. RUGA_BAD_INPUT where no face is left.
 ruga_status ruga_crease_pattern_arrange(ruga_crease_pattern* pattern, double weld);
 
 // The creases as curves: edges of one assignment and angle are chained where nothing else meets them. The
 // label of a curve is the first of its edges. Flat lines only where `flat`. `style` gives the freedom.
 ruga_status ruga_crease_pattern_curves(const ruga_crease_pattern* pattern, const ruga_curve* style, bool flat,
                                        ruga_curves* curves);
+// The other way: curves whose labels are assignments, and the boundary of a mesh as the border. Nothing is
+// arranged.
+ruga_status ruga_crease_pattern_add_curves(ruga_crease_pattern* pattern, const ruga_curves* curves);
+ruga_status ruga_crease_pattern_add_boundary(ruga_crease_pattern* pattern, const ruga_mesh* mesh);
 
 #endif

@@ -11,6 +11,7 @@
 #include "io/polygons.h"
 #include "io/text.h"
 #include "io/writer.h"
+#include "mesh/region.h"
 
 #include <jansson.h>
 #include <limits.h>
@@ -360,53 +361,6 @@ ruga_status ruga_fold_count(const char* path, int* frames) {
 
 // ------------------------------------------------------------------------------- mesh
 
-typedef struct side {
-    int low, high;
-    bool forward; // the face runs low -> high
-} side;
-
-static int compare_sides(const void* a, const void* b) {
-    const side *p = a, *q = b;
-    return p->low != q->low ? (p->low < q->low ? -1 : 1) : (p->high > q->high) - (p->high < q->high);
-}
-
-// next[v] = the vertex behind v along the outline, -1 = not on it: the sides that one face only has. *simple
-// where they are one loop.
-static ruga_status find_outline(const ruga_crease_pattern* p, int* next, int* first, bool* simple) {
-    side* list = NULL;
-    int sides = 0, steps = 0;
-    RUGA_TRY(RUGA_NEW(list, p->corner_count));
-    memset(next, -1, (size_t)p->vertex_count * sizeof *next);
-    for (int f = 0; f < p->face_count; f++) {
-        for (int k = p->face_start[f]; k < p->face_start[f + 1]; k++) {
-            int a = p->corner[k], b = p->corner[k + 1 < p->face_start[f + 1] ? k + 1 : p->face_start[f]];
-            list[k] = (side){a < b ? a : b, a < b ? b : a, a < b};
-        }
-    }
-    if (p->corner_count > 1) {
-        qsort(list, (size_t)p->corner_count, sizeof *list, compare_sides);
-    }
-    *simple = true;
-    *first = -1;
-    for (int i = 0, end; i < p->corner_count; i = end) {
-        for (end = i; end < p->corner_count && compare_sides(&list[i], &list[end]) == 0;) {
-            end++;
-        }
-        if (end - i == 1) {
-            int from = list[i].forward ? list[i].low : list[i].high;
-            *simple = *simple && next[from] < 0;
-            next[from] = list[i].forward ? list[i].high : list[i].low;
-            *first = *first < 0 ? from : *first;
-            sides++;
-        }
-    }
-    for (int v = *first; *simple && v >= 0 && steps < sides; v = next[v], steps++) {
-        *simple = steps == 0 || v != *first;
-    }
-    ruga_release(list);
-    return RUGA_OK;
-}
-
 static bool is_straight_on(const double a[3], const double b[3], const double c[3]) {
     double u[2] = {b[0] - a[0], b[1] - a[1]}, v[2] = {c[0] - b[0], c[1] - b[1]};
     double cross = u[0] * v[1] - u[1] * v[0], dot = u[0] * v[0] + u[1] * v[1];
@@ -414,21 +368,96 @@ static bool is_straight_on(const double a[3], const double b[3], const double c[
     return dot > 0 && fabs(cross) <= slack * dot;
 }
 
-// The outline as one polygon, without the vertices that creases have on its straight sides.
-static ruga_status add_outline(const ruga_crease_pattern* p, const int* next, int first,
-                               ruga_polygons* polygons) {
-    RUGA_TRY(ruga_polygons_add(polygons, 0));
-    int before = first;
-    while (next[before] != first) {
-        before = next[before];
+typedef struct outline {
+    const ruga_crease_pattern* pattern;
+    int* degree;      // [V] rims that meet there
+    int (*around)[2]; // [V] the first two of them
+    bool* done;       // [E]
+    int segment_count;
+    int (*segment)[2]; // [E]
+} outline;
+
+static int far_end(const outline* o, int e, int v) {
+    const int* end = o->pattern->edge[e].vertex;
+    return end[0] == v ? end[1] : end[0];
+}
+
+// A vertex that a crease has on a straight side is left out.
+static bool is_left_out(const outline* o, int v) {
+    double(*x)[3] = o->pattern->position;
+    return o->degree[v] == 2 &&
+           is_straight_on(x[far_end(o, o->around[v][0], v)], x[v], x[far_end(o, o->around[v][1], v)]);
+}
+
+// The straight side that begins with rim e at its vertex v.
+static void add_side(outline* o, int e, int v) {
+    int from = v;
+    for (;;) {
+        o->done[e] = true;
+        v = far_end(o, e, v);
+        if (!is_left_out(o, v)) {
+            break;
+        }
+        e = o->around[v][0] == e ? o->around[v][1] : o->around[v][0];
     }
-    for (int v = first, steps = 0; v != first || steps == 0; before = v, v = next[v], steps++) {
-        if (!is_straight_on(p->position[before], p->position[v], p->position[next[v]])) {
-            RUGA_TRY(ruga_polygons_add_corner(polygons, polygons->vertex_count, -1));
-            RUGA_TRY(ruga_polygons_add_vertex(polygons, p->position[v]));
+    memcpy(o->segment[o->segment_count++], (const int[2]){from, v}, sizeof *o->segment);
+}
+
+static ruga_status find_outline(outline* o) {
+    const ruga_crease_pattern* p = o->pattern;
+    RUGA_TRY(RUGA_NEW_ZERO(o->degree, p->vertex_count));
+    RUGA_TRY(RUGA_NEW(o->around, p->vertex_count));
+    RUGA_TRY(RUGA_NEW_ZERO(o->done, p->edge_count));
+    RUGA_TRY(RUGA_NEW(o->segment, p->edge_count));
+    for (int e = 0; e < p->edge_count; e++) {
+        for (int end = 0; end < 2 && p->edge[e].rim; end++) {
+            int v = p->edge[e].vertex[end];
+            if (o->degree[v] < 2) {
+                o->around[v][o->degree[v]] = e;
+            }
+            o->degree[v]++;
+        }
+    }
+    for (int e = 0; e < p->edge_count; e++) {
+        for (int end = 0; end < 2; end++) {
+            int v = p->edge[e].vertex[end];
+            if (p->edge[e].rim && !o->done[e] && !is_left_out(o, v)) {
+                add_side(o, e, v);
+            }
         }
     }
     return RUGA_OK;
+}
+
+static ruga_status mesh_region(const ruga_crease_pattern* p, const char* path, ruga_mesh* mesh) {
+    outline o = {.pattern = p};
+    double(*point)[2] = NULL;
+    ruga_status status = RUGA_OK;
+    RUGA_TRY_DONE(find_outline(&o));
+    RUGA_TRY_DONE(RUGA_NEW(point, p->vertex_count));
+    // Only the ends of sides are corners.
+    memset(o.degree, -1, (size_t)p->vertex_count * sizeof *o.degree);
+    int count = 0;
+    for (int s = 0; s < o.segment_count; s++) {
+        for (int end = 0; end < 2; end++) {
+            int v = o.segment[s][end];
+            if (o.degree[v] < 0) {
+                memcpy(point[count], p->position[v], sizeof *point);
+                o.degree[v] = count++;
+            }
+            o.segment[s][end] = o.degree[v];
+        }
+    }
+    status = ruga_mesh_from_region(count, (const double(*)[2])point, o.segment_count,
+                                   (const int(*)[2])o.segment, mesh);
+    status = status == RUGA_OK ? status : ruga_fail_prefix(status, "%s", path);
+done:
+    ruga_release(point);
+    ruga_release(o.degree);
+    ruga_release(o.around);
+    ruga_release(o.done);
+    ruga_release(o.segment);
+    return status;
 }
 
 static ruga_status add_faces(const ruga_crease_pattern* p, ruga_polygons* polygons) {
@@ -444,24 +473,22 @@ static ruga_status add_faces(const ruga_crease_pattern* p, ruga_polygons* polygo
     return RUGA_OK;
 }
 
-ruga_status ruga_crease_pattern_mesh(const ruga_crease_pattern* pattern, const char* path, ruga_mesh* mesh) {
+static ruga_status mesh_faces(const ruga_crease_pattern* p, const char* path, ruga_mesh* mesh) {
     ruga_polygons polygons;
     ruga_status status = RUGA_OK;
-    int *next = NULL, first = -1;
-    bool simple = false;
-    if (pattern->face_count == 0) {
-        return ruga_fail(RUGA_BAD_INPUT, "%s: the crease pattern has no faces", path);
-    }
     ruga_polygons_begin(&polygons);
-    RUGA_TRY_DONE(RUGA_NEW(next, pattern->vertex_count));
-    RUGA_TRY_DONE(find_outline(pattern, next, &first, &simple));
-    RUGA_TRY_DONE(simple && first >= 0 && !pattern->folded ? add_outline(pattern, next, first, &polygons)
-                                                           : add_faces(pattern, &polygons));
+    RUGA_TRY_DONE(add_faces(p, &polygons));
     RUGA_TRY_DONE(ruga_polygons_finish(&polygons, path, mesh));
 done:
     ruga_polygons_clear(&polygons);
-    ruga_release(next);
     return status;
+}
+
+ruga_status ruga_crease_pattern_mesh(const ruga_crease_pattern* pattern, const char* path, ruga_mesh* mesh) {
+    if (pattern->face_count == 0) {
+        return ruga_fail(RUGA_BAD_INPUT, "%s: the crease pattern has no faces", path);
+    }
+    return pattern->folded ? mesh_faces(pattern, path, mesh) : mesh_region(pattern, path, mesh);
 }
 
 // ------------------------------------------------------------------------------- writing

@@ -22,8 +22,8 @@ ruga_status ruga_fold_count(const char* path, int* frames);
 // the size.
 ruga_status ruga_svg_read(const char* path, double scale, double tolerance, ruga_crease_pattern* pattern);
 
-// What lies within the outline as a few large triangles, which know nothing of the creases, to be remeshed. A
-// pattern with holes or in pieces, and a folded form, keep their faces. RUGA_BAD_INPUT where there are none.
+// What lies within the outline, holes left out, as a few large triangles, which know nothing of the creases,
+// to be remeshed. A folded form keeps its faces. RUGA_BAD_INPUT where there are none.
 ruga_status ruga_crease_pattern_mesh(const ruga_crease_pattern* pattern, const char* path, ruga_mesh* mesh);
 
 // What is written: triangles (or any faces), and edges with assignments.
@@ -36,5 +36,9 @@ typedef struct ruga_fold_frame {
 // it.
 ruga_status ruga_fold_write(const char* path, const ruga_crease_pattern* pattern, bool flat, int frame_count,
                             const ruga_fold_frame* frame);
+
+// A drawing of a flat pattern in the colours that ruga_svg_read knows, one unit of it `unit` m: each chain of
+// lines is a path, so that a drawing program takes it as one.
+ruga_status ruga_svg_write(const char* path, const ruga_crease_pattern* pattern, double unit);
 
 #endif

@@ -708,3 +708,41 @@ ruga_status ruga_result_read_restart(ruga_result_reader* reader, int frame, doub
     ruga_hdf5_end(&hdf5);
     return status;
 }
+
+static ruga_status get_optional(ruga_hdf5* hdf5, hid_t set, const char* name, int rank, size_t* size, double** values) {
+    hsize_t found[3] = {1, 1, 1};
+    bool ok = set >= 0 && ruga_hdf5_shape(set, rank, found) && found[0] <= INT_MAX && found[1] <= INT_MAX / 3 &&
+              found[2] <= INT_MAX / 3 && H5Dget_storage_size(set) >= found[0] * found[1] * found[2];
+    RUGA_TRY(ruga_hdf5_check(hdf5, ok, RUGA_BAD_INPUT, name));
+    for (int i = 0; i < rank; i++) {
+        size[i] = (size_t)found[i];
+    }
+    RUGA_TRY(RUGA_NEW(*values, found[0] * found[1] * found[2]));
+    ok = H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values) >= 0;
+    return ruga_hdf5_check(hdf5, ok, RUGA_BAD_INPUT, name);
+}
+
+ruga_status ruga_result_read_optional(ruga_result_reader* reader, const char* name, int rank, size_t* size,
+                                      double** values) {
+    char group[64];
+    *values = NULL;
+    RUGA_ASSERT(rank >= 1 && rank <= 3 && strlen(name) < sizeof group);
+    memcpy(group, name, strlen(name) + 1);
+    *strrchr(group, '/') = '\0';
+    ruga_hdf5 hdf5;
+    ruga_hdf5_begin(&hdf5, reader->path);
+    ruga_status status = RUGA_OK;
+    if (exists(reader->file, group, name)) {
+        hid_t set = H5Dopen2(reader->file, name, H5P_DEFAULT);
+        status = get_optional(&hdf5, set, name, rank, size, values);
+        if (set >= 0) {
+            (void)H5Dclose(set);
+        }
+    }
+    ruga_hdf5_end(&hdf5);
+    if (status != RUGA_OK) {
+        ruga_release(*values);
+        *values = NULL;
+    }
+    return status;
+}

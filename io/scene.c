@@ -26,9 +26,9 @@ static uint64_t hash_bytes(uint64_t hash, const char* bytes, size_t length) {
 static uint64_t hash_values(const ruga_scene_parts* parts) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (const ruga_scene_value* v = parts->first_value; v; v = v->next) {
-        // skin.vary and creases themselves stand there only where they have no entries, which have keys of their own.
+        // skin.vary, follow and creases themselves stand there only where they have no keys of their own.
         if (strcmp(v->key, "time.frames") != 0 && strcmp(v->key, "skin.vary") != 0 &&
-            strcmp(v->key, "creases") != 0) {
+            strcmp(v->key, "follow") != 0 && strcmp(v->key, "creases") != 0) {
             hash = hash_bytes(hash, v->key, strlen(v->key) + 1);
             hash = hash_bytes(hash, v->value, strlen(v->value) + 1);
         }
@@ -53,7 +53,8 @@ static uint64_t hash_creases(uint64_t hash, const ruga_model_def* def) {
     for (int i = 0; i < def->crease_count; i++) {
         const ruga_crease_def* crease = &def->creases[i];
         size_t width = crease->path == RUGA_CREASE_UV ? 2 : 3;
-        hash = hash_bytes(hash, (const char*)crease->points, width * (size_t)crease->point_count * sizeof(double));
+        hash = hash_bytes(hash, (const char*)crease->points,
+                          width * (size_t)crease->point_count * sizeof(double));
         hash = hash_bytes(hash, (const char*)&crease->rest, sizeof crease->rest);
         hash = hash_bytes(hash, (const char*)&crease->kind, sizeof crease->kind);
     }
@@ -70,6 +71,7 @@ static ruga_status keep_text(const ruga_yaml_node* root, ruga_scene_parts* parts
     return status;
 }
 
+// Without a directory, no mesh.
 static ruga_status build(ruga_yaml_node* root, ruga_pool* tree, const char* directory, int set_count,
                          const char* const* sets, ruga_scene* scene) {
     ruga_scene_parts* parts = scene->storage;
@@ -82,10 +84,14 @@ static ruga_status build(ruga_yaml_node* root, ruga_pool* tree, const char* dire
     RUGA_TRY(ruga_scene_check_keys(root, parts, &scene->def));
     RUGA_TRY(keep_text(root, parts, &scene->text));
     scene->hash = hash_values(parts);
+    if (!directory) {
+        return RUGA_OK;
+    }
     RUGA_TRY(ruga_scene_load_mesh(root, directory, scene));
     RUGA_TRY(ruga_scene_vary_skin(root, directory, scene));
     RUGA_TRY(ruga_scene_load_creases(root, directory, scene));
     scene->hash = hash_creases(hash_arrays(scene->hash, &scene->def.skin), &scene->def);
+    RUGA_TRY(ruga_scene_follow_surface(root, directory, scene));
     scene->mesh_hash = ruga_mesh_hash(&scene->mesh);
     scene->def.mesh = ruga_mesh_as_def(&scene->mesh);
     return RUGA_OK;
@@ -121,6 +127,10 @@ done:
 ruga_status ruga_scene_read_text(const char* text, const char* name, const char* directory, int set_count,
                                  const char* const* sets, ruga_scene* scene) {
     return read_text(text, strlen(text), name, directory, set_count, sets, scene);
+}
+
+ruga_status ruga_scene_read_settings(const char* text, const char* name, ruga_scene* scene) {
+    return read_text(text, strlen(text), name, NULL, 0, NULL, scene);
 }
 
 // The whole file; one byte more than is allowed is enough to know that there is too much.
@@ -165,6 +175,7 @@ done:
 void ruga_scene_clear(ruga_scene* scene) {
     ruga_scene_parts* parts = scene->storage;
     if (parts) {
+        ruga_scene_follow_clear(parts);
         ruga_pool_clear(&parts->pool);
     }
     ruga_release(parts);

@@ -29,6 +29,9 @@ typedef struct ruga_scene {
 ruga_status ruga_scene_read(const char* path, int set_count, const char* const* sets, ruga_scene* scene);
 ruga_status ruga_scene_read_text(const char* text, const char* name, const char* directory, int set_count,
                                  const char* const* sets, ruga_scene* scene);
+// The same of the text that a result keeps, but without the mesh, whose file may be gone: def has none, and a skin that
+// varies has no values at vertices.
+ruga_status ruga_scene_read_settings(const char* text, const char* name, ruga_scene* scene);
 void ruga_scene_clear(ruga_scene* scene);
 
 // Every key with its value (in SI) and whether it was given or is the default, in the scene's order.

@@ -4,6 +4,8 @@
 // Entries of `creases` to the creases of a def: one for a curve that is drawn, one for each line of a
 // pattern.
 #include "core/memory.h"
+#include "core/vec3.h"
+#include "crease/flat.h"
 #include "io/fold.h"
 #include "io/scene_read.h"
 
@@ -11,6 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
+static const double FLAT = 1e-6;          // rad off half a turn
 static const double SVG_TOLERANCE = 1e-3; // of a drawing's size, for curves
 
 static bool ends_with(const char* name, const char* end) {
@@ -93,6 +96,31 @@ static ruga_status add_lines(loader* l, const ruga_scene_crease* crease, const c
     return RUGA_OK;
 }
 
+// Where the rest angles are those of a pattern folded flat.
+static ruga_status warn_of_faults(loader* l, const ruga_scene_crease* crease, const char* file,
+                                  const ruga_crease_pattern* pattern) {
+    int count;
+    ruga_flat_fault* fault;
+    char text[200];
+    bool flat = crease->rest.word && !pattern->folded;
+    for (int e = 0; e < pattern->edge_count; e++) {
+        double angle = ruga_crease_pattern_rest(&pattern->edge[e]);
+        flat = flat && (angle == 0 || fabs(fabs(angle) - RUGA_PI) < FLAT);
+    }
+    if (!flat) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(ruga_crease_pattern_flat_faults(pattern, &count, &fault));
+    ruga_status status = RUGA_OK;
+    if (count > 0) {
+        ruga_flat_fault_say(pattern, &fault[0], text);
+        status = ruga_scene_warn(l->scene, "%s: the pattern cannot fold flat at %d of its vertices: %s", file,
+                                 count, text);
+    }
+    ruga_release(fault);
+    return status;
+}
+
 static ruga_status add_pattern(loader* l, const ruga_scene_crease* crease, const char* directory) {
     ruga_status status = RUGA_OK;
     ruga_crease_pattern pattern = {0};
@@ -104,6 +132,7 @@ static ruga_status add_pattern(loader* l, const ruga_scene_crease* crease, const
     for (int i = 0; i < pattern.note_count; i++) {
         RUGA_TRY_DONE(ruga_scene_warn(l->scene, "%s: %s", file, pattern.note[i]));
     }
+    RUGA_TRY_DONE(warn_of_faults(l, crease, file, &pattern));
     RUGA_TRY_DONE(ruga_crease_pattern_curves(&pattern, &(ruga_curve){0}, false, &curves));
     if (curves.count == 0) {
         status = ruga_fail(RUGA_BAD_INPUT, "%s has no creases", file);

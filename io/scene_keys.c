@@ -251,38 +251,117 @@ static void describe_value(const ruga_key* key, ruga_string* text) {
     }
 }
 
+// What stands before the keys of each part of a scene in the reference: a scene that can be run once `mesh`
+// is given.
+static const struct {
+    const char *key, *scene;
+} examples[] = {
+    {"ruga", "ruga: 1\n"},
+    {"mesh", "mesh:\n"
+             "  file: cube.obj            # or make: {shape: pillow, size: 50 cm, edge: 8 mm}\n"
+             "  unit: cm                  # of the file's coordinates\n"
+             "  groups: [top, rest]       # of the file's groups only these\n"
+             "  remesh: {edge: 2 mm}      # triangles small enough for the wrinkles\n"},
+    {"skin", "skin:\n"
+             "  thickness: 2 mm\n"
+             "  young: 40 MPa\n"
+             "  poisson: 0.3\n"
+             "  vary:                     # thinner within a ball, and thicker and thicker along x\n"
+             "    - {gradient: {from: [-20 cm, 0, 0], to: [20 cm, 0, 0]}, thickness: [1 mm, 3 mm]}\n"
+             "    - {region: {sphere: {center: [0, 0, 10 cm], radius: 6 cm}}, thickness: 0.8 mm}\n"},
+    {"interior", "interior: {young: 20 kPa, poisson: 0.3, density: 40 kg/m^3, motion: quasistatic}\n"},
+    {"lattice", "lattice: {cells: 8}\n"},
+    {"coupling", "coupling: {kind: clusters, rule: calibrated, foundation: true}\n"},
+    {"prescribed", "prescribed:                 # squeezed along x by 5 % in half a second, with a dent\n"
+                   "  - {time: 0 s}\n"
+                   "  - time: 0.5 s\n"
+                   "    stretch: [0.95, 1, 1]\n"
+                   "    bump: {center: [0, 0, 10 cm], radius: 5 cm, depth: 1 cm}\n"},
+    {"time", "time: {step: 20 ms, frames: 50}\n"},
+    {"start", "mesh: {make: {shape: sheet, size: [20 cm, 12 cm], edge: 5 mm}}\n"
+              "skin: {motion: dynamic}\n"
+              "interior: none\n"
+              "start: {velocity: [1, 0, 2]}\n"},
+    {"gravity", "gravity: [0, 0, -9.81]\n"},
+    {"handles", "handles:\n"
+                "  - {region: {plane: {center: [-20 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}\n"
+                "  - region: {sphere: {center: [20 cm, 0, 0], radius: 5 cm}}\n"
+                "    move: {translate: [-2 cm, 0, 0], rotate: {axis: [1, 0, 0], angle: 30 deg}}\n"
+                "    during: [0 s, 0.5 s]      # grows, and then stays\n"
+                "  - {region: {box: [[-5 cm, -5 cm, 0], [5 cm, 5 cm, 20 cm]]}, press: 2 kPa}\n"},
+    {"creases", "mesh: {make: {shape: sheet, size: [20 cm, 12 cm], edge: 5 mm}}\n"
+                "interior: none\n"
+                "handles: [{region: {plane: {center: [-9 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}]\n"
+                "creases:\n"
+                "  - curve: {polyline: [[0, -6 cm, 0], [2 cm, 0, 0], [0, 6 cm, 0]]}\n"
+                "    hinge:                    # a valley that closes to 60 degrees in half a second\n"
+                "      stiffness: 0.1 N\n"
+                "      animate: [{time: 0 s, angle: 0 deg}, {time: 0.5 s, angle: 60 deg}]\n"},
+    {"solver", "solver: {tolerance: 1e-6, seed: 7}\n"},
+};
+
+const char* ruga_key_example(const ruga_key* key) {
+    for (size_t i = 0; i < sizeof examples / sizeof examples[0]; i++) {
+        if (strcmp(examples[i].key, key->path) == 0) {
+            return examples[i].scene;
+        }
+    }
+    return NULL;
+}
+
+static const char reference_head[] =
+    "# Scene files\n\n"
+    "Made from the table in io/scene_schema.c by `RUGA_WRITE_DOCS=1 test_scene_reference`; the test of that "
+    "name "
+    "compares\n"
+    "the two, and reads each example.\n\n"
+    "A scene is one YAML document (JSON is a subset). Every key but `mesh` may be left out: its default "
+    "stands\n"
+    "below. A key that does not exist, is given twice, or has a wrong dimension is refused with file and "
+    "line.\n\n"
+    "- A quantity is a number and a unit: `0.4 mm`, `40 MPa`, `60 kg/m^3`, `10 deg`, `5 %`. Without a unit "
+    "it is\n"
+    "  in SI: m, s, Pa, N, kg, rad. Units are those of UDUNITS-2; dates and offsets (`degC`) are refused.\n"
+    "- NaN and infinity are refused everywhere. A key with nothing after its colon is refused.\n"
+    "- Aliases (`*name`) stand for a copy of what they name. Tags, merge keys (`<<`) and further documents "
+    "are\n"
+    "  refused, and so are more than 64 MB and more than 100 levels.\n"
+    "- `--set key.path=value` replaces or adds a value before anything is checked; entries of lists are "
+    "numbered\n"
+    "  from 0: `--set handles.0.press=\"5 kPa\"`.\n"
+    "- With `interior: none` there are no `lattice`, `coupling` and `prescribed`.\n"
+    "- The scene's hash, which `--resume` compares, covers every value with its default in SI, but not\n"
+    "  `time.frames`, comments, spelling or the order of keys.\n\n"
+    "In the tables, N stands for the number of an entry in a list, and a value of `2 x m` for a list of two "
+    "lengths.\n"
+    "`ruga explain` shows all values of a scene, given or not.\n\n";
+
+// The heading of a part of the scene, with its example.
+static void describe_part(const ruga_key* key, ruga_string* text) {
+    const char* scene = ruga_key_example(key);
+    ruga_string_add(text, "\n## %s\n\n%s\n\n", key->path, key->meaning);
+    if (scene) {
+        ruga_string_add(text, "```yaml\n%s```\n\n", scene);
+    }
+    ruga_string_add(text, "| key | value | default | meaning |\n|---|---|---|---|\n");
+}
+
 ruga_status ruga_scene_reference(ruga_string* text) {
-    ruga_string_add(
-        text,
-        "# Scene files\n\n"
-        "Made from the table in io/scene_schema.c by `RUGA_WRITE_DOCS=1 test_scene`; the test of that name "
-        "compares\n"
-        "the two.\n\n"
-        "A scene is one YAML document (JSON is a subset). Every key but `mesh` may be left out: its default "
-        "stands\n"
-        "below. A key that does not exist, is given twice, or has a wrong dimension is refused with file and "
-        "line.\n\n"
-        "- A quantity is a number and a unit: `0.4 mm`, `40 MPa`, `60 kg/m^3`, `10 deg`, `5 %%`. Without a "
-        "unit it is\n"
-        "  in SI: m, s, Pa, N, kg, rad. Units are those of UDUNITS-2; dates and offsets (`degC`) are "
-        "refused.\n"
-        "- NaN and infinity are refused everywhere. A key with nothing after its colon is refused.\n"
-        "- Aliases (`*name`) stand for a copy of what they name. Tags, merge keys (`<<`) and further "
-        "documents are\n"
-        "  refused, and so are more than 64 MB and more than 100 levels.\n"
-        "- `--set key.path=value` replaces or adds a value before anything is checked; entries of lists are "
-        "numbered\n"
-        "  from 0: `--set handles.0.press=\"5 kPa\"`.\n"
-        "- With `interior: none` there are no `lattice`, `coupling` and `prescribed`.\n"
-        "- The scene's hash, which `--resume` compares, covers every value with its default in SI, but not\n"
-        "  `time.frames`, comments, spelling or the order of keys.\n\n"
-        "N stands for the number of an entry in a list.\n\n"
-        "| key | value | default | meaning |\n|---|---|---|---|\n");
+    ruga_string_add(text, "%sParts: ", reference_head);
+    for (int i = 0, n = 0; i < ruga_key_count; i++) {
+        if (!strchr(ruga_keys[i].path, '.')) {
+            ruga_string_add(text, "%s[%s](#%s)", n++ ? ", " : "", ruga_keys[i].path, ruga_keys[i].path);
+        }
+    }
+    ruga_string_add(text, ".\n");
     for (int i = 0; i < ruga_key_count; i++) {
         const ruga_key* key = &ruga_keys[i];
         const char* fallback = key->fallback ? key->fallback : "-";
         bool section = key->kind == RUGA_KEY_SECTION && fallback[0] == '{';
         bool words = fallback[0] == '(' || fallback[0] == '-' || section;
+        if (!strchr(key->path, '.')) {
+            describe_part(key, text);
+        }
         ruga_string_add(text, "| `%s` | ", key->path);
         describe_value(key, text);
         ruga_string_add(text, words ? " | %s | " : " | `%s` | ", section ? "-" : fallback);

@@ -183,8 +183,13 @@ static ruga_status remesh(const ruga_yaml_node* node, double edge, ruga_scene* s
     }
     ruga_mesh fresh = {0};
     ruga_status status = ruga_mesh_remesh(&scene->mesh, edge, &fresh);
+    ruga_scene_parts* parts = scene->storage;
     if (status == RUGA_OK) {
-        ruga_mesh_clear(&scene->mesh);
+        if (parts->follow.file) {
+            parts->before_remesh = scene->mesh;
+        } else {
+            ruga_mesh_clear(&scene->mesh);
+        }
         scene->mesh = fresh;
     }
     return ruga_yaml_fail_at(status, ruga_yaml_find(node, "remesh"), "mesh.remesh");
@@ -269,12 +274,17 @@ static ruga_status check_selection(const ruga_yaml_node* node, const char* shown
     RUGA_TRY(ruga_yaml_fail_at(ruga_region_vertices(&handle->region, &scene->mesh, &count, selected), node,
                                shown));
     // fix and move act on the interior too, where a region may hold material without any of the surface.
-    bool on_skin = !scene->def.has_interior || handle->hold == RUGA_HOLD_SKIN ||
-                   (handle->kind != RUGA_HANDLE_FIX && handle->kind != RUGA_HANDLE_MOVE);
+    bool holds = handle->kind == RUGA_HANDLE_FIX || handle->kind == RUGA_HANDLE_MOVE;
+    bool on_skin = !scene->def.has_interior || handle->hold == RUGA_HOLD_SKIN || !holds;
     double min[3], max[3];
     ruga_mesh_bounds(&scene->mesh, min, max);
     bool anything = count > 0 || (!on_skin && region_may_hold_interior(&handle->region,
                                                                        scene->def.lattice.fill, min, max));
+    // Corners of creases become vertices only when the mesh is cut; the model refuses what holds nothing
+    // then.
+    const ruga_scene_parts* parts = scene->storage;
+    anything = anything || (holds && parts->crease_count > 0 &&
+                            region_may_hold_interior(&handle->region, RUGA_FILL_MESH, min, max));
     return anything
                ? RUGA_OK
                : ruga_yaml_fail(node, shown,
@@ -316,6 +326,7 @@ ruga_status ruga_scene_load_mesh(const ruga_yaml_node* root, const char* directo
                    source->file ? source->file : ruga_shape_name(source->make.shape));
     RUGA_TRY(ruga_pool_copy(&parts->pool, name, strlen(name), &scene->mesh_name));
     RUGA_TRY(read_source(node, source, directory, &parts->pool, &scene->mesh));
+    parts->file_vertices = scene->mesh.vertex_count;
     RUGA_TRY(take_groups(node, &source->groups, &scene->mesh));
     int dropped;
     RUGA_TRY(drop_unused_vertices(&scene->mesh, &dropped));

@@ -488,7 +488,8 @@ static ruga_status read_leaf(reader* r, const place* p, bool given) {
 // The default of an absent key in its section; NULL where there is none to set or show.
 static const char* fallback_of(const reader* r, const ruga_key* key, const ruga_yaml_node* section) {
     const char* path = key->path;
-    if (strcmp(path, "interior.motion") == 0 && ruga_yaml_find(r->root, "prescribed")) {
+    if (strcmp(path, "interior.motion") == 0 &&
+        (ruga_yaml_find(r->root, "prescribed") || ruga_yaml_find(r->root, "follow"))) {
         return "prescribed";
     }
     if (strcmp(path, "mesh.make.edge") == 0 && ruga_yaml_find(section, "cells")) {
@@ -686,6 +687,8 @@ static ruga_status read_key(reader* r, const ruga_key* key, const char* shown, c
     place p = {key, path, ruga_yaml_find(node, name), target};
     if (strcmp(key->path, "mesh") == 0) {
         p.target = (char*)&r->parts->source;
+    } else if (strcmp(key->path, "follow") == 0) {
+        p.target = (char*)&r->parts->follow;
     }
     if (!p.node) {
         return read_absent(r, &p, node, above);
@@ -717,7 +720,7 @@ static ruga_status read_section(reader* r, const char* section, const char* show
             continue;
         }
         bool of_interior = strcmp(key->path, "lattice") == 0 || strcmp(key->path, "coupling") == 0 ||
-                           strcmp(key->path, "prescribed") == 0;
+                           strcmp(key->path, "prescribed") == 0 || strcmp(key->path, "follow") == 0;
         const ruga_yaml_node* given = node ? ruga_yaml_find(node, ruga_key_name(key)) : NULL;
         if (of_interior && !r->def->has_interior) {
             if (given) {

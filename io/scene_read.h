@@ -22,6 +22,10 @@ typedef struct ruga_scene_parts {
     ruga_scene_source source;
     int vary_count;
     ruga_scene_vary* vary;
+    ruga_scene_follow follow;
+    int file_vertices;              // of the mesh as it was read
+    ruga_mesh before_remesh;        // where the scene follows a surface: empty without remeshing
+    struct ruga_follower* follower; // io/scene_follow.c
     int crease_count;
     ruga_scene_crease* crease;
     ruga_scene_value *first_value, *last_value;
@@ -41,6 +45,10 @@ ruga_status ruga_scene_load_mesh(const ruga_yaml_node* root, const char* directo
 // The arrays of a skin that varies, on the mesh as it is simulated.
 ruga_status ruga_scene_vary_skin(const ruga_yaml_node* root, const char* directory, ruga_scene* scene);
 
+// The moving surface that the interior follows, checked against the mesh; its content goes into the scene's
+// hash.
+ruga_status ruga_scene_follow_surface(const ruga_yaml_node* root, const char* directory, ruga_scene* scene);
+void ruga_scene_follow_clear(ruga_scene_parts* parts);
 // The creases of the def, on the mesh as it is simulated: all those of a pattern, with their assigned angles.
 ruga_status ruga_scene_load_creases(const ruga_yaml_node* root, const char* directory, ruga_scene* scene);
 // Whether a file is a crease pattern, by its name; and the pattern, as it is in the file.

@@ -53,10 +53,21 @@ static ruga_status check_interior(const ruga_yaml_node* root, const ruga_model_d
     const ruga_yaml_node* prescribed = ruga_yaml_find(root, "prescribed");
     const ruga_interior_motion motion = def->interior.motion;
     const ruga_yaml_node* given = ruga_yaml_find(interior, "motion");
-    if (motion == RUGA_INTERIOR_PRESCRIBED && def->keyframe_count == 0) {
+    const ruga_yaml_node* follow = ruga_yaml_find(root, "follow");
+    if (follow && prescribed) {
+        return ruga_yaml_fail(follow, "follow", "prescribed is given too; keep one of them");
+    }
+    if (follow && motion != RUGA_INTERIOR_PRESCRIBED) {
+        return ruga_yaml_fail(
+            follow, "follow",
+            "a moving surface drives a prescribed interior only; write interior.motion: prescribed, or "
+            "leave the key out");
+    }
+    if (motion == RUGA_INTERIOR_PRESCRIBED && def->keyframe_count == 0 && !follow) {
         return ruga_yaml_fail(
             given ? given : prescribed, given ? "interior.motion" : "prescribed",
-            "prescribed motion needs at least one keyframe: prescribed: [{time: 0 s, ...}]");
+            "prescribed motion needs at least one keyframe: prescribed: [{time: 0 s, ...}], or a surface to "
+            "follow: follow: {file: body.pc2}");
     }
     if (motion != RUGA_INTERIOR_PRESCRIBED && prescribed) {
         return ruga_yaml_fail(

@@ -18,6 +18,7 @@
 #define SOURCE(field)   IN(ruga_scene_source, field)
 #define HANDLE(field)   IN(ruga_handle_def, field)
 #define KEYFRAME(field) IN(ruga_keyframe_def, field)
+#define FOLLOW(field)   IN(ruga_scene_follow, field)
 #define VARY(field)     IN(ruga_scene_vary, field)
 #define CREASE(field)   IN(ruga_scene_crease, field)
 
@@ -205,6 +206,18 @@ const ruga_key ruga_keys[] = {
     NUMBER("prescribed.N.bump.depth", KEYFRAME(bump_depth), "m", REQUIRED, ANY, "Depth at the centre."),
     NUMBERS("prescribed.N.bump.direction", 3, KEYFRAME(bump_direction), "1", "[0, 0, -1]", ANY,
             "Direction, of any length but 0."),
+
+    SECTION("follow", "(none)",
+            "A moving surface that the interior follows, in place of `prescribed`: the lattice is fitted to each of its "
+            "samples, linear in between, held outside."),
+    OTHER("follow.file", RUGA_KEY_TEXT, FOLLOW(file), "", REQUIRED,
+          "A point cache (.pc2, .mdd) of the mesh's file, or its .obj files, numbered from 0 or 1 by %d or %04d in the "
+          "name; the same vertices in the same order, in the mesh's unit and scale."),
+    NUMBER("follow.rate", FOLLOW(rate), "1/s", "24 1/s", POSITIVE,
+           "Samples per second. Not for .mdd, which has times of its own."),
+    NUMBER("follow.start", FOLLOW(start), "s", "0 s", ANY, "Time of the first sample."),
+    NUMBER("follow.smoothness", FOLLOW(smoothness), "1", "1e-4", POSITIVE,
+           "Weight of the lattice's second differences beside the mean square distance to the surface."),
 
     SECTION("time", "{}", "Frame k is at k times the step."),
     NUMBER("time.step", MODEL(step), "s", "20 ms", POSITIVE, "Time from frame to frame."),

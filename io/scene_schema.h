@@ -69,6 +69,12 @@ typedef struct ruga_scene_vary {
     ruga_scene_pair value[RUGA_VARY_VALUES];
 } ruga_scene_vary;
 
+// The follow section.
+typedef struct ruga_scene_follow {
+    char* file; // NULL = none
+    double rate, start, smoothness;
+} ruga_scene_follow;
+
 // Rows of points, or values; `word` where the word stands in their place, count 0 = not given.
 typedef struct ruga_scene_points {
     int count;
@@ -96,8 +102,8 @@ typedef struct ruga_key {
     const char* path; // "skin.thickness", "handles.N.region.box"
     ruga_key_kind kind;
     int count;
-    int offset; // bytes in ruga_scene_source, _scene_vary, _scene_crease, _crease_key, _handle_def, _keyframe_def or
-                // _model_def; -1 = none
+    int offset; // bytes in ruga_scene_source, _scene_vary, _scene_crease, _crease_key, _handle_def,
+                // _keyframe_def or _model_def; -1 = none
     const char* dimension; // "" where it is no quantity
     // In YAML. NULL: none, the key chooses or must be given. In parentheses: what its absence means, in
     // words. A section with a default of {} is always there, with the defaults of its keys.
@@ -133,7 +139,8 @@ bool ruga_choice_nearest(const char* choices, const char* name, char nearest[32]
 void ruga_range_text(const ruga_range* range, ruga_string* text);
 bool ruga_range_has(const ruga_range* range, double value);
 
-// docs/scene.md
+// docs/scene.md, and the example in it for a key at the top level; NULL where there is none.
+const char* ruga_key_example(const ruga_key* key);
 ruga_status ruga_scene_reference(ruga_string* text);
 
 #endif

@@ -14,6 +14,7 @@
 #include "core/vec3.h"
 #include "io/svg_path.h"
 #include "io/text.h"
+#include "io/writer.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,13 +32,15 @@ typedef struct style {
 } style;
 
 typedef struct reader {
-    ruga_xml xml;
+    const ruga_xml_tag* tag;      // the last one that opened
     ruga_crease_pattern* pattern; // NULL in the first pass
     double scale, tolerance;
     double low[2], high[2];
     style stack[MOST_DEPTH];
     int depth;
-    ruga_slice sheet; // text of <style>
+    char* sheet; // text of <style>
+    int sheet_length, sheet_capacity;
+    bool in_sheet;
     int without_stroke, white;
     ruga_assignment assignment; // of the shape at hand
     double angle;
@@ -204,7 +207,7 @@ static bool names_class(ruga_slice selectors, ruga_slice name) {
 }
 
 static void set_class(const reader* r, style* s, double outer_opacity, ruga_slice name) {
-    const char *p = r->sheet.at, *end = p ? p + r->sheet.length : p;
+    const char *p = r->sheet, *end = p ? p + r->sheet_length : p;
     while (p && p < end) {
         const char* open = memchr(p, '{', (size_t)(end - p));
         const char* close = open ? memchr(open, '}', (size_t)(end - open)) : NULL;
@@ -219,7 +222,7 @@ static void set_class(const reader* r, style* s, double outer_opacity, ruga_slic
 }
 
 static ruga_status fail(const reader* r, const char* what) {
-    return ruga_fail(RUGA_BAD_INPUT, "%s:%d: %s", r->xml.path, r->xml.line, what);
+    return ruga_fail(RUGA_BAD_INPUT, "%s:%d: %s", r->tag->path, r->tag->line, what);
 }
 
 // The style of the tag at hand, from that around it.
@@ -227,24 +230,24 @@ static ruga_status read_style(const reader* r, const style* outer, style* s) {
     static const char* const names[] = {"stroke", "opacity", "stroke-opacity", "display", "visibility"};
     *s = *outer;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        ruga_slice value = ruga_xml_attribute(&r->xml, names[i]);
+        ruga_slice value = ruga_xml_attribute(r->tag, names[i]);
         if (value.at) {
             set_property(s, outer->opacity, (ruga_slice){names[i], strlen(names[i])},
                          trim(value.at, value.at + value.length));
         }
     }
-    ruga_slice classes = ruga_xml_attribute(&r->xml, "class");
+    ruga_slice classes = ruga_xml_attribute(r->tag, "class");
     for (const char *p = classes.at, *end = p ? p + classes.length : p; p && p < end;) {
         const char* stop = memchr(p, ' ', (size_t)(end - p));
         stop = stop ? stop : end;
         set_class(r, s, outer->opacity, (ruga_slice){p, (size_t)(stop - p)});
         p = stop + 1;
     }
-    ruga_slice own = ruga_xml_attribute(&r->xml, "style");
+    ruga_slice own = ruga_xml_attribute(r->tag, "style");
     if (own.at) {
         set_declarations(s, outer->opacity, own);
     }
-    ruga_slice moved = ruga_xml_attribute(&r->xml, "transform");
+    ruga_slice moved = ruga_xml_attribute(r->tag, "transform");
     if (moved.at) {
         ruga_svg_transform transform;
         if (!ruga_svg_parse_transform(moved, &transform)) {
@@ -279,14 +282,14 @@ static ruga_status take_line(const double from[2], const double to[2], void* con
 }
 
 static double number_of(const reader* r, const char* name) {
-    ruga_slice text = ruga_xml_attribute(&r->xml, name);
+    ruga_slice text = ruga_xml_attribute(r->tag, name);
     double value = 0;
     const char* p = text.at;
     return text.at && ruga_svg_number(&p, text.at + text.length, &value) ? value : 0;
 }
 
 static ruga_status draw_listed_points(const reader* r, const ruga_svg_pen* pen, bool closed) {
-    ruga_slice text = ruga_xml_attribute(&r->xml, "points");
+    ruga_slice text = ruga_xml_attribute(r->tag, "points");
     double(*point)[2] = NULL;
     int count = 0, capacity = 0;
     ruga_status status = RUGA_OK;
@@ -308,7 +311,7 @@ done:
 }
 
 static ruga_status draw_path(const reader* r, const ruga_svg_pen* pen) {
-    ruga_slice data = ruga_xml_attribute(&r->xml, "d");
+    ruga_slice data = ruga_xml_attribute(r->tag, "d");
     const char* bad = NULL;
     if (!data.at) {
         return RUGA_OK;
@@ -316,14 +319,14 @@ static ruga_status draw_path(const reader* r, const ruga_svg_pen* pen) {
     RUGA_TRY(ruga_svg_draw_path(pen, data, &bad));
     if (bad) {
         int length = (int)(data.at + data.length - bad);
-        return ruga_fail(RUGA_BAD_INPUT, "%s:%d: path data cannot be read from \"%.*s\" on", r->xml.path,
-                         r->xml.line, length < 20 ? length : 20, bad);
+        return ruga_fail(RUGA_BAD_INPUT, "%s:%d: path data cannot be read from \"%.*s\" on", r->tag->path,
+                         r->tag->line, length < 20 ? length : 20, bad);
     }
     return RUGA_OK;
 }
 
 static ruga_status draw_shape(reader* r, const ruga_svg_pen* pen) {
-    ruga_slice name = r->xml.name;
+    ruga_slice name = r->tag->name;
     if (ruga_slice_is(name, "path")) {
         return draw_path(r, pen);
     }
@@ -373,57 +376,52 @@ static ruga_status read_shape(reader* r, const style* s) {
     return draw_shape(r, &pen);
 }
 
-// The text of a <style> element; several are not looked for.
-static void keep_sheet(reader* r) {
-    const char* end = r->xml.after;
-    while (end < r->xml.end && !(end[0] == '<' && end[1] == '/')) {
-        end++;
-    }
-    r->sheet = (ruga_slice){r->xml.after, (size_t)(end - r->xml.after)};
-}
-
-static ruga_status read_tag(reader* r) {
+static ruga_status open_tag(const ruga_xml_tag* tag, void* context) {
     static const char* const shapes[] = {"path", "polyline", "polygon", "line",
                                          "rect", "circle",   "ellipse", NULL};
     static const char* const unseen[] = {"defs", "symbol", "clipPath", "mask", "pattern", "marker", NULL};
-    ruga_xml* xml = &r->xml;
-    if (!xml->opens) {
-        r->depth -= r->depth > 0;
-        return RUGA_OK;
-    }
+    reader* r = context;
     style s;
+    r->tag = tag;
     RUGA_TRY(read_style(r, &r->stack[r->depth], &s));
-    s.hidden = s.hidden || is_one_of(xml->name, unseen);
-    if (ruga_slice_is(xml->name, "style")) {
-        keep_sheet(r);
-    }
-    if (is_one_of(xml->name, shapes)) {
+    s.hidden = s.hidden || is_one_of(tag->name, unseen);
+    r->in_sheet = ruga_slice_is(tag->name, "style") && !r->pattern; // the second pass has it already
+    if (is_one_of(tag->name, shapes)) {
         RUGA_TRY(read_shape(r, &s));
     }
-    if (!xml->closes) {
-        if (r->depth + 1 == MOST_DEPTH) {
-            return fail(r, "elements are nested too deeply");
-        }
-        r->stack[++r->depth] = s;
+    if (r->depth + 1 == MOST_DEPTH) {
+        return fail(r, "elements are nested too deeply");
+    }
+    r->stack[++r->depth] = s;
+    return RUGA_OK;
+}
+
+static ruga_status close_tag(void* context) {
+    reader* r = context;
+    r->depth--;
+    r->in_sheet = false;
+    return RUGA_OK;
+}
+
+static ruga_status take_text(ruga_slice text, void* context) {
+    reader* r = context;
+    if (r->in_sheet) {
+        RUGA_TRY(RUGA_RESERVE(r->sheet, r->sheet_capacity, (size_t)r->sheet_length + text.length));
+        memcpy(r->sheet + r->sheet_length, text.at, text.length);
+        r->sheet_length += (int)text.length;
     }
     return RUGA_OK;
 }
 
 static ruga_status read_drawing(reader* r, const ruga_text* text) {
-    ruga_xml_begin(text->path, text->data, text->size, &r->xml);
+    const ruga_xml_events events = {open_tag, close_tag, take_text, r};
     r->depth = r->without_stroke = r->white = 0;
     r->stack[0] = (style){.transform = {{1, 0, 0, 1, 0, 0}}, .stroke = -1, .opacity = 1, .stroke_opacity = 1};
     for (int i = 0; i < 2; i++) {
         r->low[i] = INFINITY;
         r->high[i] = -INFINITY;
     }
-    for (bool found = true; found;) {
-        RUGA_TRY(ruga_xml_next(&r->xml, &found));
-        if (found) {
-            RUGA_TRY(read_tag(r));
-        }
-    }
-    return RUGA_OK;
+    return ruga_xml_read(text->path, text->data, text->size, &events);
 }
 
 static ruga_status read_pattern(reader* r, const ruga_text* text, double tolerance,
@@ -459,10 +457,77 @@ ruga_status ruga_svg_read(const char* path, double scale, double tolerance, ruga
         r->scale = scale;
         status = read_pattern(r, &text, tolerance, pattern);
     }
+    ruga_release(r ? r->sheet : NULL);
     ruga_release(r);
     ruga_text_close(&text);
     if (status != RUGA_OK) {
         ruga_crease_pattern_clear(pattern);
     }
     return status;
+}
+
+// ------------------------------------------------------------------------------- writing
+
+static void begin_path(ruga_writer* w, ruga_assignment assignment) {
+    static const char* const colours[RUGA_ASSIGNMENT_COUNT] = {"#000000", "#ff0000", "#0000ff",
+                                                               "#ffff00", "#ff00ff", "#00ff00"};
+    (void)fprintf(w->file, "<path stroke=\"%s\" d=\"M", colours[assignment]);
+}
+
+static void write_point(ruga_writer* w, const double x[3], double unit) {
+    ruga_writer_double(w, x[0] / unit);
+    ruga_writer_double(w, -x[1] / unit);
+}
+
+static void write_head(ruga_writer* w, const ruga_crease_pattern* p, double unit) {
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int v = 0; v < p->vertex_count; v++) {
+        for (int i = 0; i < 2; i++) {
+            low[i] = fmin(low[i], p->position[v][i] / unit);
+            high[i] = fmax(high[i], p->position[v][i] / unit);
+        }
+    }
+    double wide = high[0] - low[0], tall = high[1] - low[1], margin = 0.02 * fmax(wide, tall);
+    const double box[4] = {low[0] - margin, -high[1] - margin, wide + 2 * margin, tall + 2 * margin};
+    (void)fputs("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"", w->file);
+    for (int i = 0; i < 4; i++) {
+        ruga_writer_double(w, box[i]);
+    }
+    (void)fputs("\" fill=\"none\" stroke-width=\"", w->file);
+    ruga_writer_double(w, 0.1 * margin);
+    (void)fputs("\">\n", w->file);
+}
+
+ruga_status ruga_svg_write(const char* path, const ruga_crease_pattern* pattern, double unit) {
+    ruga_curves curves = {0};
+    ruga_writer w;
+    ruga_status status = ruga_crease_pattern_curves(pattern, &(ruga_curve){.label = 0}, true, &curves);
+    if (status == RUGA_OK) {
+        status = ruga_writer_open(path, &w);
+    }
+    if (status != RUGA_OK) {
+        ruga_curves_clear(&curves);
+        return status;
+    }
+    write_head(&w, pattern, unit);
+    for (int e = 0; e < pattern->edge_count; e++) {
+        const ruga_crease_pattern_edge* edge = &pattern->edge[e];
+        if (edge->assignment == RUGA_ASSIGNMENT_BORDER) {
+            begin_path(&w, edge->assignment);
+            write_point(&w, pattern->position[edge->vertex[0]], unit);
+            write_point(&w, pattern->position[edge->vertex[1]], unit);
+            (void)fputs("\"/>\n", w.file);
+        }
+    }
+    for (int k = 0; k < curves.count; k++) {
+        const ruga_curve* c = &curves.curve[k];
+        begin_path(&w, pattern->edge[c->label].assignment);
+        for (int i = 0; i < c->point_count; i++) {
+            write_point(&w, c->point[i], unit);
+        }
+        (void)fputs(c->closed ? "z\"/>\n" : "\"/>\n", w.file);
+    }
+    (void)fputs("</svg>\n", w.file);
+    ruga_curves_clear(&curves);
+    return ruga_writer_close(&w, RUGA_OK);
 }

@@ -19,6 +19,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/wide.h"
 #include "lattice/corotational.h"
 
 #include <math.h>
@@ -29,8 +30,8 @@ enum { POINTS = RUGA_LATTICE_POINTS, BATCH = 64, ELEMENT_CHUNK = 2, SCATTER_CHUN
 static const double STIFFNESS_FLOOR = 1e-3;
 
 // A tile of sums stays in registers over all rows. Each sum runs over rows in order.
-void ruga_plane_accumulate(int count, int width, const double* left, const double* right, bool upper,
-                           double* plane) {
+RUGA_WIDE void ruga_plane_accumulate(int count, int width, const double* left, const double* right,
+                                     bool upper, double* plane) {
     for (int a = 0; a < width; a += 4) {
         for (int b = upper ? a : 0; b < width; b += 4) {
             double sum[4][4] = {{0}};
@@ -52,10 +53,10 @@ void ruga_plane_accumulate(int count, int width, const double* left, const doubl
     }
 }
 
-void ruga_plane_mirror(int width, double* plane) {
+void ruga_plane_mirror(int width, const double* plane, double* mirrored) {
     for (int a = 0; a < width; a++) {
-        for (int b = 0; b < a; b++) {
-            plane[a * width + b] = plane[b * width + a];
+        for (int b = 0; b < (mirrored == plane ? a : width); b++) {
+            mirrored[a * width + b] = plane[b * width + a];
         }
     }
 }
@@ -133,6 +134,9 @@ ruga_status ruga_elasticity_create(const ruga_lattice* lattice, double young, do
     tabulate_shapes(e);
     floor_stiffness(e);
     sort_vertices(e);
+    if (vertex_pattern) {
+        RUGA_TRY_DONE(ruga_embedding_create(e, vertex_pattern));
+    }
 done:
     if (status != RUGA_OK) {
         ruga_elasticity_destroy(&e);
@@ -148,6 +152,8 @@ void ruga_elasticity_destroy(ruga_elasticity** elasticity) {
         ruga_release(e->stiffness);
         ruga_release(e->vertex_start);
         ruga_release(e->vertex);
+        ruga_release(e->embedded_block);
+        ruga_release(e->embedded_link);
         ruga_release(e);
     }
     *elasticity = NULL;
@@ -204,7 +210,7 @@ static void stiffness_planes(const ruga_elasticity* e, const double hessian[][81
             memset(planes, 0, (size_t)(w * w) * sizeof *planes);
             ruga_plane_accumulate(3 * POINTS, w, e->gradient, right, i == k, planes);
             if (i == k) {
-                ruga_plane_mirror(w, planes);
+                ruga_plane_mirror(w, planes, planes);
             }
             planes += w * w;
         }

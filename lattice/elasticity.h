@@ -35,8 +35,8 @@ ruga_status ruga_elasticity_mass(const ruga_elasticity* elasticity, double densi
                                  double* mass);
 
 // Adds B^T K B to hessian values of the pattern, for a symmetric vertex matrix K given as its lower triangle
-// (3 V x 3 V in 3 x 3 blocks, as from shell/). K may couple only vertices of elements that vertex_pattern
-// coupled; RUGA_BAD_INPUT otherwise.
+// (3 V x 3 V in 3 x 3 blocks, as from shell/), which must have the pattern that was given as vertex_pattern;
+// RUGA_BAD_INPUT otherwise.
 ruga_status ruga_elasticity_add_embedded(const ruga_elasticity* elasticity, const ruga_sparse* vertex_matrix,
                                          double* hessian);
 

@@ -2,21 +2,22 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // Mass        M_ab = sum over points of density v_eg N_a N_b + sum over vertices of m_v B_va B_vb
-// Embedded    B^T K B = X + X^T,   X = sum over stored blocks (i, j) of B_i^T K_ij B_j, diagonal blocks
-// halved
+// Embedded    B^T K B = sum over elements e of X_ee + sum over linked elements e > f of X_ef + X_ef^T,
+//             X_ef = sum over blocks K_ij with vertex i in e and j in f of B_i^T K_ij B_j
 //
-// A block K_ij couples the nodes of the elements of i and of j only. Blocks are grouped by this ordered pair
-// of elements; within a group all blocks of the same column vertex j are first summed to T_j = sum of B_i^T
-// K_ij (81 x 3), so that the costly outer product T_j B_j is made once for each vertex and neighbouring
-// element.
+// All blocks of a link with the same column vertex j are first summed to T_j = sum of B_i^T K_ij (81 x 3), so
+// that the costly outer product T_j B_j is made once for each vertex and neighbouring element. X_ee is
+// symmetric: six of its nine planes are made, three of them by half.
 #include "lattice/elasticity_internal.h"
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/wide.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-enum { POINTS = RUGA_LATTICE_POINTS, MASS_BATCH = 64, GROUP_BATCH = 32, ROWS = 16 };
+enum { POINTS = RUGA_LATTICE_POINTS, MASS_BATCH = 64, LINK_BATCH = 32, ROWS = 16, COLUMNS = 32 };
 
 //---- mass ----
 
@@ -68,7 +69,7 @@ static void element_masses(int begin, int end, int chunk, void* context) {
             }
             ruga_plane_accumulate(rows, w, left, right, true, plane);
         }
-        ruga_plane_mirror(w, plane);
+        ruga_plane_mirror(w, plane, plane);
     }
 }
 
@@ -115,210 +116,223 @@ ruga_status ruga_elasticity_mass(const ruga_elasticity* elasticity, double densi
 
 //---- embedded vertex matrices ----
 
-// A 3 x 3 block of the vertex matrix.
-typedef struct vertex_block {
-    int row, column; // vertices
-    int first;       // position of its first entry
-} vertex_block;
+// By link, and within a link by column.
+static int compare_blocks(const void* left, const void* right) {
+    const ruga_embedded_block *a = left, *b = right;
+    int by_link = (a->link > b->link) - (a->link < b->link);
+    int by_column = (a->column > b->column) - (a->column < b->column);
+    return by_link ? by_link : by_column ? by_column : (a->row > b->row) - (a->row < b->row);
+}
 
-// Group 2 link: row in the link's higher element; 2 link + 1: in the lower one.
+ruga_status ruga_embedding_create(ruga_elasticity* e, const ruga_sparse* k) {
+    const int* element = e->lattice->vertex_element;
+    int entries = k->start[k->columns], most = 2 * (entries / 9 + k->columns / 3);
+    e->embedding_entries = entries;
+    RUGA_TRY(RUGA_NEW(e->embedded_block, most));
+    for (int j = 0; j < k->columns / 3; j++) {
+        for (int p = k->start[3 * j]; p < k->start[3 * j + 1]; p += 3) {
+            int i = k->index[p] / 3, link = ruga_link_find(&e->pattern, element[i], element[j]);
+            if (element[i] >= element[j]) {
+                e->embedded_block[e->embedded_count++] = (ruga_embedded_block){link, i, j, p};
+            }
+            if (element[i] <= element[j] && i != j) {
+                e->embedded_block[e->embedded_count++] = (ruga_embedded_block){link, j, i, p};
+            }
+        }
+    }
+    qsort(e->embedded_block, (size_t)e->embedded_count, sizeof *e->embedded_block, compare_blocks);
+    RUGA_TRY(RUGA_NEW(e->embedded_link, e->pattern.links.start[e->pattern.links.columns] + 1));
+    for (int b = 0; b < e->embedded_count; b++) {
+        if (b == 0 || e->embedded_block[b].link != e->embedded_block[b - 1].link) {
+            e->embedded_link[e->embedded_link_count++] = b;
+        }
+    }
+    e->embedded_link[e->embedded_link_count] = e->embedded_count;
+    return RUGA_OK;
+}
+
 typedef struct embedding {
     const ruga_elasticity* e;
     const ruga_sparse* k;
     double* hessian;
-    vertex_block* block; // [blocks] by group, each in the order of the columns
-    int* group_start;    // [2 links + 1]
-    int* group;          // groups that have blocks
-    int* high;           // [links] higher element of each link
-    int* low;            // [links]
-    double* planes;      // [GROUP_BATCH][9][width][width], component row * 3 + column
-    int group_count, first, count;
+    double* planes; // [LINK_BATCH][9][width][width], component row * 3 + column; of X_ee only row <= column
+    int first, count;
 } embedding;
 
-static int group_of(const embedding* m, int row, int column) {
-    int row_element = m->e->lattice->vertex_element[row];
-    int column_element = m->e->lattice->vertex_element[column];
-    int link = ruga_link_find(&m->e->pattern, row_element, column_element);
-    return link < 0 ? -1 : 2 * link + (row_element < column_element);
-}
-
-static ruga_status count_groups(embedding* m) {
-    for (int j = 0; j < m->k->columns / 3; j++) {
-        for (int p = m->k->start[3 * j]; p < m->k->start[3 * j + 1]; p += 3) {
-            int group = group_of(m, m->k->index[p] / 3, j);
-            if (group < 0) {
-                return ruga_fail(RUGA_BAD_INPUT,
-                                 "vertices %d and %d are coupled, but their lattice elements are not: "
-                                 "create the elasticity with this matrix's pattern",
-                                 m->k->index[p] / 3, j);
-            }
-            m->group_start[group + 1]++;
+// K is read as the caller gives it, so its pattern is compared with the one that the blocks were listed from.
+static bool has_known_pattern(const ruga_elasticity* e, const ruga_sparse* k) {
+    if (k->start[k->columns] != e->embedding_entries) {
+        return false;
+    }
+    for (int b = 0; b < e->embedded_count; b++) {
+        const ruga_embedded_block* block = &e->embedded_block[b];
+        int low = block->row < block->column ? block->row : block->column,
+            high = block->row + block->column - low;
+        if (block->first < k->start[3 * low] || block->first >= k->start[3 * low + 1] ||
+            k->index[block->first] != 3 * high) {
+            return false;
         }
     }
-    return RUGA_OK;
+    return true;
 }
 
-// Counting sort of the vertex blocks by group.
-static ruga_status sort_blocks(embedding* m) {
-    int groups = 2 * m->e->pattern.links.start[m->e->pattern.links.columns];
-    RUGA_TRY(RUGA_NEW_ZERO(m->group_start, groups + 2));
-    RUGA_TRY(count_groups(m));
-    RUGA_TRY(RUGA_NEW(m->group, groups));
-    for (int g = 0; g < groups; g++) {
-        if (m->group_start[g + 1] > 0) {
-            m->group[m->group_count++] = g;
-        }
-        m->group_start[g + 1] += m->group_start[g];
-    }
-    RUGA_TRY(RUGA_NEW(m->block, m->group_start[groups]));
-    // Filled shifted by one, so that the fill marks end as the beginnings.
-    memmove(m->group_start + 1, m->group_start, (size_t)(groups + 1) * sizeof *m->group_start);
-    for (int j = 0; j < m->k->columns / 3; j++) {
-        for (int p = m->k->start[3 * j]; p < m->k->start[3 * j + 1]; p += 3) {
-            int row = m->k->index[p] / 3;
-            m->block[m->group_start[group_of(m, row, j) + 1]++] = (vertex_block){row, j, p};
-        }
-    }
-    return RUGA_OK;
-}
-
-static ruga_status name_links(embedding* m) {
-    const ruga_sparse* links = &m->e->pattern.links;
-    RUGA_TRY(RUGA_NEW(m->high, links->start[links->columns]));
-    RUGA_TRY(RUGA_NEW(m->low, links->start[links->columns]));
-    for (int low = 0; low < links->columns; low++) {
-        for (int k = links->start[low]; k < links->start[low + 1]; k++) {
-            m->high[k] = links->index[k];
-            m->low[k] = low;
-        }
-    }
-    return RUGA_OK;
-}
-
-static void read_block(const ruga_sparse* k, const vertex_block* block, double value[9]) {
-    int offset[3];
-    ruga_block_offsets(k, block->column, offset);
+static void read_block(const ruga_sparse* k, const ruga_embedded_block* block, double value[9]) {
+    int offset[3], low = block->row < block->column ? block->row : block->column;
+    ruga_block_offsets(k, low, offset);
     for (int c = 0; c < 3; c++) {
         for (int r = 0; r < 3; r++) {
-            if (block->row != block->column) {
-                value[3 * r + c] = k->value[block->first + offset[c] + r];
-            } else {
-                int low = r < c ? r : c, high = r + c - low;
-                value[3 * r + c] = 0.5 * k->value[block->first + offset[low] + high];
+            bool turned = block->row < block->column || (block->row == block->column && r < c);
+            value[3 * r + c] = k->value[block->first + (turned ? offset[r] + c : offset[c] + r)];
+        }
+    }
+}
+
+// One column's T in rows of sum [9][stride] from blocks [count], all of the same column.
+RUGA_WIDE static void sum_column(const ruga_elasticity* e, const ruga_sparse* k, int count,
+                                 const ruga_embedded_block* block, int stride, double* sum) {
+    int w = e->width, n = e->lattice->nodes_per_element;
+    double weight[RUGA_WIDTH_MAX] = {0}, value[9];
+    for (int m = 0; m < count; m++) {
+        memcpy(weight, &e->lattice->vertex_weight[(size_t)block[m].row * (size_t)n],
+               (size_t)n * sizeof *weight);
+        read_block(k, &block[m], value);
+        for (int p = 0; p < 9; p++) {
+            double* row = &sum[p * stride];
+            for (int a = 0; a < w; a++) {
+                row[a] = (m > 0 ? row[a] : 0) + value[p] * weight[a];
             }
         }
     }
 }
 
-// X of one group. T_j of ROWS column vertices are gathered, then multiplied at once.
-static void form_group(const embedding* m, int group, double* planes) {
-    const ruga_elasticity* e = m->e;
-    int w = e->width, n = e->lattice->nodes_per_element, rows = 0;
-    double left[9 * ROWS * RUGA_WIDTH_MAX], right[ROWS * RUGA_WIDTH_MAX];
+// X of one link. T_j of COLUMNS column vertices are gathered, then multiplied at once.
+static void form_link(const ruga_elasticity* e, const ruga_sparse* k, int begin, int end, double* planes) {
+    const ruga_embedded_block* block = e->embedded_block;
+    const int* element = e->lattice->vertex_element;
+    int w = e->width, rows = 0;
+    bool symmetric = element[block[begin].row] == element[block[begin].column];
+    double left[9 * COLUMNS * RUGA_WIDTH_MAX], right[COLUMNS * RUGA_WIDTH_MAX];
     memset(planes, 0, 9 * (size_t)(w * w) * sizeof *planes);
-    for (int at = m->group_start[group], end = m->group_start[group + 1]; at < end;) {
-        int column = m->block[at].column;
-        for (int p = 0; p < 9; p++) {
-            memset(&left[(p * ROWS + rows) * w], 0, (size_t)w * sizeof *left);
+    for (int at = begin; at < end;) {
+        int first = at, column = block[first].column;
+        while (at < end && block[at].column == column) {
+            at++;
         }
-        for (; at < end && m->block[at].column == column; at++) {
-            const double* weight = &e->lattice->vertex_weight[(size_t)m->block[at].row * (size_t)n];
-            double value[9];
-            read_block(m->k, &m->block[at], value);
-            for (int p = 0; p < 9; p++) {
-                double* sum = &left[(p * ROWS + rows) * w];
-                for (int a = 0; a < n; a++) {
-                    sum[a] += value[p] * weight[a];
-                }
-            }
-        }
+        sum_column(e, k, at - first, &block[first], COLUMNS * w, &left[rows * w]);
         vertex_row(e, column, 1, &right[rows * w]);
         rows++;
-        if (rows == ROWS || at == end) {
+        if (rows == COLUMNS || at == end) {
             for (int p = 0; p < 9; p++) {
-                ruga_plane_accumulate(rows, w, &left[p * ROWS * w], right, false, &planes[p * w * w]);
+                if (!symmetric || p / 3 <= p % 3) {
+                    ruga_plane_accumulate(rows, w, &left[p * COLUMNS * w], right, symmetric && p % 4 == 0,
+                                          &planes[p * w * w]);
+                }
             }
             rows = 0;
         }
     }
-}
-
-static void form_groups(int begin, int end, int chunk, void* context) {
-    (void)chunk;
-    const embedding* m = context;
-    size_t size = 9 * (size_t)(m->e->width * m->e->width);
-    for (int k = begin; k < end; k++) {
-        form_group(m, m->group[m->first + k], m->planes + (size_t)k * size);
-    }
-}
-
-// Adds block (a, b) of X and its transpose, where they are in the lower triangle: x is its entry of plane 0.
-static void add_with_transpose(const double* x, int plane, int row_node, int column_node, const int offset[3],
-                               double* first) {
-    for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 3; c++) {
-            double value = x[(3 * r + c) * plane];
-            if (row_node > column_node) {
-                first[offset[c] + r] += value;
-            } else if (row_node < column_node) {
-                first[offset[r] + c] += value;
-            } else if (r >= c) {
-                first[offset[c] + r] += value + x[(3 * c + r) * plane];
-            }
+    for (int r = 0; r < 3 && symmetric; r++) {
+        for (int c = 0; c <= r; c++) {
+            ruga_plane_mirror(w, &planes[(3 * c + r) * w * w], &planes[(3 * r + c) * w * w]);
         }
     }
 }
 
-static void scatter_group(const embedding* m, int group, const double* planes, int begin, int end) {
+static void form_links(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const embedding* m = context;
+    const int* start = m->e->embedded_link;
+    size_t size = 9 * (size_t)(m->e->width * m->e->width);
+    for (int l = begin; l < end; l++) {
+        form_link(m->e, m->k, start[m->first + l], start[m->first + l + 1], m->planes + (size_t)l * size);
+    }
+}
+
+// Adds block (a, b) of X, x its entry of plane 0, to a block of the lower triangle; turned: its transpose.
+static void add_block(const double* x, int plane, bool turned, const int offset[3], double* first) {
+    int down = turned ? plane : 3 * plane, across = 4 * plane - down;
+    for (int c = 0; c < 3; c++) {
+        for (int r = 0; r < 3; r++) {
+            first[offset[c] + r] += x[r * down + c * across];
+        }
+    }
+}
+
+// The same to a block on the diagonal, of which the lower half is stored.
+static void add_to_diagonal(const double* x, int plane, bool turned, const int offset[3], double* first) {
+    for (int c = 0; c < 3; c++) {
+        for (int r = c; r < 3; r++) {
+            first[offset[c] + r] += x[(turned ? 3 * c + r : 3 * r + c) * plane];
+        }
+    }
+}
+
+static void scatter_link(const embedding* m, const ruga_embedded_block* one, const double* planes, int begin,
+                         int end) {
     const ruga_element_pattern* pattern = &m->e->pattern;
-    int n = pattern->nodes_per_element, w = m->e->width, link = group / 2;
-    bool swapped = group % 2;
-    const int* row_node = &pattern->element_node[(swapped ? m->low : m->high)[link] * n];
-    const int* column_node = &pattern->element_node[(swapped ? m->high : m->low)[link] * n];
-    const int* block = &pattern->block[(size_t)link * (size_t)(n * n)];
+    const int* element = m->e->lattice->vertex_element;
+    int n = pattern->nodes_per_element, w = m->e->width, high = element[one->row], low = element[one->column];
+    const int *row_node = &pattern->element_node[high * n], *column_node = &pattern->element_node[low * n];
+    const int* block = &pattern->block[(size_t)one->link * (size_t)(n * n)];
+    // Columns of nodes in [begin, end), and then those above: with a row inside, all of them meet the range.
+    int column[RUGA_WIDTH_MAX], inside = 0, all;
+    for (int b = 0; b < n; b++) {
+        column[inside] = b;
+        inside += column_node[b] >= begin && column_node[b] < end;
+    }
+    all = inside;
+    for (int b = 0; b < n; b++) {
+        column[all] = b;
+        all += column_node[b] >= end;
+    }
     for (int a = 0; a < n; a++) {
-        for (int b = 0; b < n; b++) {
-            int low = row_node[a] < column_node[b] ? row_node[a] : column_node[b];
-            if (low >= begin && low < end) {
-                int offset[3];
-                ruga_block_offsets(&pattern->matrix, low, offset);
-                int first = block[swapped ? b * n + a : a * n + b];
-                add_with_transpose(&planes[a * w + b], w * w, row_node[a], column_node[b], offset,
-                                   &m->hessian[first]);
+        int count = row_node[a] < begin ? 0 : row_node[a] < end ? all : inside;
+        for (int i = 0; i < count; i++) {
+            int b = column[i], offset[3];
+            ruga_block_offsets(&pattern->matrix, row_node[a] < column_node[b] ? row_node[a] : column_node[b],
+                               offset);
+            const double* x = &planes[a * w + b];
+            double* first = &m->hessian[block[a * n + b]];
+            if (row_node[a] != column_node[b]) {
+                if (high != low || row_node[a] > column_node[b]) {
+                    add_block(x, w * w, row_node[a] < column_node[b], offset, first);
+                }
+                continue;
+            }
+            for (int turn = 0; turn <= (high != low); turn++) {
+                add_to_diagonal(x, w * w, turn, offset, first);
             }
         }
     }
 }
 
-static void scatter_groups(int begin, int end, int chunk, void* context) {
+static void scatter_links(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const embedding* m = context;
-    size_t size = 9 * (size_t)(m->e->width * m->e->width);
-    for (int k = 0; k < m->count; k++) {
-        scatter_group(m, m->group[m->first + k], m->planes + (size_t)k * size, begin, end);
+    const ruga_elasticity* e = m->e;
+    size_t size = 9 * (size_t)(e->width * e->width);
+    for (int l = 0; l < m->count; l++) {
+        scatter_link(m, &e->embedded_block[e->embedded_link[m->first + l]], m->planes + (size_t)l * size,
+                     begin, end);
     }
 }
 
-ruga_status ruga_elasticity_add_embedded(const ruga_elasticity* elasticity, const ruga_sparse* vertex_matrix,
+ruga_status ruga_elasticity_add_embedded(const ruga_elasticity* e, const ruga_sparse* vertex_matrix,
                                          double* hessian) {
-    RUGA_ASSERT(vertex_matrix->columns == 3 * elasticity->lattice->vertex_count);
-    embedding m = {.e = elasticity, .k = vertex_matrix, .hessian = hessian};
-    ruga_status status = RUGA_OK;
-    RUGA_TRY_DONE(sort_blocks(&m));
-    RUGA_TRY_DONE(name_links(&m));
-    RUGA_TRY_DONE(RUGA_NEW(m.planes, GROUP_BATCH * 9 * elasticity->width * elasticity->width));
-    for (m.first = 0; m.first < m.group_count; m.first += GROUP_BATCH) {
-        m.count = m.group_count - m.first < GROUP_BATCH ? m.group_count - m.first : GROUP_BATCH;
-        ruga_parallel_for(m.count, 1, form_groups, &m);
-        ruga_parallel_for(elasticity->lattice->node_count, ruga_scatter_chunk(elasticity), scatter_groups,
-                          &m);
+    RUGA_ASSERT(vertex_matrix->columns == 3 * e->lattice->vertex_count);
+    if (!has_known_pattern(e, vertex_matrix)) {
+        return ruga_fail(RUGA_BAD_INPUT,
+                         "the vertex matrix has another pattern than the one that the lattice's "
+                         "elasticity was created with: create it with this matrix's pattern");
     }
-done:
-    ruga_release(m.block);
-    ruga_release(m.group_start);
-    ruga_release(m.group);
-    ruga_release(m.high);
-    ruga_release(m.low);
+    embedding m = {.e = e, .k = vertex_matrix, .hessian = hessian};
+    RUGA_TRY(RUGA_NEW(m.planes, LINK_BATCH * 9 * e->width * e->width));
+    for (m.first = 0; m.first < e->embedded_link_count; m.first += LINK_BATCH) {
+        m.count =
+            e->embedded_link_count - m.first < LINK_BATCH ? e->embedded_link_count - m.first : LINK_BATCH;
+        ruga_parallel_for(m.count, 1, form_links, &m);
+        ruga_parallel_for(e->lattice->node_count, ruga_scatter_chunk(e), scatter_links, &m);
+    }
     ruga_release(m.planes);
-    return status;
+    return RUGA_OK;
 }

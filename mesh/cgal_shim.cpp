@@ -12,11 +12,14 @@
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/compute_normal.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
 #include <CGAL/Polygon_mesh_processing/repair.h>
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
@@ -280,6 +283,49 @@ ruga_status ruga_cgal_surface_get(const ruga_cgal_surface* surface, double* posi
         }
         *patch++ = surface->patch[f];
     }
+    return RUGA_OK;
+    RUGA_SHIM_END(library)
+}
+
+using PlaneCorner = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
+using PlaneFace =
+    CGAL::Triangulation_face_base_with_info_2<int, Kernel,
+                                              CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using Plane =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
+                                               CGAL::Triangulation_data_structure_2<PlaneCorner, PlaneFace>,
+                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
+
+static void read_plane(const Plane& cdt, ruga_cgal_plane* plane) {
+    for (auto f : cdt.finite_face_handles()) {
+        int k = f->info();
+        for (int i = 0; i < 3; i++) {
+            plane->triangle[k][i] = f->vertex(i)->info();
+            plane->beside[k][i] = cdt.is_infinite(f->neighbor(i)) ? -1 : f->neighbor(i)->info();
+            plane->firm[k][i] = f->is_constrained(i);
+        }
+    }
+}
+
+ruga_status ruga_cgal_triangulate(int point_count, const double (*point)[2], int segment_count,
+                                  const int (*segment)[2], ruga_cgal_plane* plane) {
+    RUGA_SHIM_BEGIN
+    Plane cdt;
+    std::vector<Plane::Vertex_handle> corner;
+    for (int i = 0; i < point_count; i++) {
+        size_t before = cdt.number_of_vertices();
+        corner.push_back(cdt.insert(Kernel::Point_2(point[i][0], point[i][1])));
+        corner.back()->info() = cdt.number_of_vertices() > before ? i : corner.back()->info();
+    }
+    for (int s = 0; s < segment_count; s++) {
+        cdt.insert_constraint(corner[static_cast<size_t>(segment[s][0])],
+                              corner[static_cast<size_t>(segment[s][1])]);
+    }
+    plane->triangle_count = 0;
+    for (auto f : cdt.finite_face_handles()) {
+        f->info() = plane->triangle_count++;
+    }
+    read_plane(cdt, plane);
     return RUGA_OK;
     RUGA_SHIM_END(library)
 }

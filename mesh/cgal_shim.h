@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// What Ruga takes from CGAL: exact predicates, box intersection, nearest points and isotropic remeshing.
+// What Ruga takes from CGAL: exact predicates, box intersection, nearest points, isotropic remeshing and
+// plane triangulations.
 #ifndef RUGA_MESH_CGAL_SHIM_H
 #define RUGA_MESH_CGAL_SHIM_H
 
@@ -55,6 +56,18 @@ int ruga_cgal_surface_triangle_count(const ruga_cgal_surface* surface);
 // position [V][3], triangle [F][3], patch [F]
 ruga_status ruga_cgal_surface_get(const ruga_cgal_surface* surface, double* position, int* triangle,
                                   int* patch);
+
+// The constrained Delaunay triangulation of points in the plane, over their convex hull. Segments must not
+// cross.
+typedef struct ruga_cgal_plane {
+    int triangle_count;
+    int (*triangle)[3]; // [2 V] points, counter-clockwise
+    int (*beside)[3];   // [2 V] triangle across the side opposite to a corner, -1 = none
+    bool (*firm)[3];    // [2 V] that side is a segment
+} ruga_cgal_plane;
+// The caller gives the arrays. Points that coincide with an earlier one are in no triangle.
+ruga_status ruga_cgal_triangulate(int point_count, const double (*point)[2], int segment_count,
+                                  const int (*segment)[2], ruga_cgal_plane* plane);
 
 #ifdef __cplusplus
 }

@@ -73,24 +73,33 @@ static void put_on_old_vertices(transfer* t) {
 
 // ---- attributes
 
+// Barycentric weights of a point of a face.
+static void weigh_corners(const ruga_mesh* mesh, int face, const double point[3], double weight[3]) {
+    const int* corner = mesh->triangle + 3 * (size_t)face;
+    const double* p[3];
+    double n[3];
+    for (int i = 0; i < 3; i++) {
+        p[i] = mesh->position + 3 * (size_t)corner[i];
+    }
+    ruga_triangle_normal(p[0], p[1], p[2], n);
+    for (int i = 0; i < 3; i++) {
+        double part[3];
+        ruga_triangle_normal(point, p[(i + 1) % 3], p[(i + 2) % 3], part);
+        weight[i] = ruga_dot(part, n) / ruga_dot(n, n);
+    }
+}
+
 static void transfer_attributes(transfer* t) {
     const ruga_mesh* old = t->old;
     size_t count = (size_t)old->attribute_count;
     for (size_t v = 0; v < (size_t)t->mesh->vertex_count; v++) {
         const int* corner = old->triangle + 3 * (size_t)t->vertex.face[v];
-        const double* p[3];
-        double n[3], *to = t->mesh->attribute + count * v;
-        for (int i = 0; i < 3; i++) {
-            p[i] = old->position + 3 * (size_t)corner[i];
-        }
-        ruga_triangle_normal(p[0], p[1], p[2], n);
+        double weight[3], *to = t->mesh->attribute + count * v;
+        weigh_corners(old, t->vertex.face[v], t->vertex.point + 3 * v, weight);
         memset(to, 0, count * sizeof *to);
         for (int i = 0; i < 3; i++) {
-            double part[3];
-            ruga_triangle_normal(t->vertex.point + 3 * v, p[(i + 1) % 3], p[(i + 2) % 3], part);
-            double weight = ruga_dot(part, n) / ruga_dot(n, n);
             for (size_t a = 0; a < count; a++) {
-                to[a] += weight * old->attribute[count * (size_t)corner[i] + a];
+                to[a] += weight[i] * old->attribute[count * (size_t)corner[i] + a];
             }
         }
     }
@@ -258,5 +267,22 @@ done:
     nearest_clear(&t.centre);
     ruga_release(t.first);
     ruga_release(t.next);
+    return status;
+}
+
+ruga_status ruga_mesh_locate(const ruga_mesh* mesh, int count, const double* point, int (*corner)[3],
+                             double (*weight)[3]) {
+    nearest found = {0};
+    ruga_cgal_locator* locator = NULL;
+    ruga_status status = RUGA_OK;
+    RUGA_TRY_DONE(ruga_cgal_locator_create(mesh->position, mesh->triangle_count, mesh->triangle, &locator));
+    RUGA_TRY_DONE(nearest_find(locator, count, point, &found));
+    for (size_t k = 0; k < (size_t)count; k++) {
+        memcpy(corner[k], mesh->triangle + 3 * (size_t)found.face[k], sizeof corner[k]);
+        weigh_corners(mesh, found.face[k], found.point + 3 * k, weight[k]);
+    }
+done:
+    ruga_cgal_locator_destroy(&locator);
+    nearest_clear(&found);
     return status;
 }

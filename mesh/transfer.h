@@ -12,4 +12,9 @@
 // whose positions and triangles are set. `edge` (m) is the length of the new edges.
 ruga_status ruga_mesh_transfer(const ruga_mesh* old, double edge, ruga_mesh* mesh);
 
+// The nearest point of a mesh to each of [count][3] points: corner [count] vertices of its face, weight
+// [count], sum 1.
+ruga_status ruga_mesh_locate(const ruga_mesh* mesh, int count, const double* point, int (*corner)[3],
+                             double (*weight)[3]);
+
 #endif

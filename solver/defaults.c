@@ -41,6 +41,7 @@ ruga_model_def ruga_default_model_def(void) {
                      .motion = RUGA_INTERIOR_DYNAMIC},
         .lattice = {.cells = 6, .degree = 2, .fill = RUGA_FILL_MESH, .depth = 0},
         .coupling = {.kind = RUGA_COUPLING_CLUSTERS, .rule = RUGA_RULE_CALIBRATED, .foundation = true},
+        .follow = {.smoothness = 1e-4},
         .step = 20e-3,
         .frames = 50,
         .solver = {.method = RUGA_METHOD_DEFAULT,

@@ -19,6 +19,9 @@ static ruga_status check_motion(const ruga_model_def* def) {
     if (!def->has_interior || def->interior.motion != RUGA_INTERIOR_PRESCRIBED) {
         return ruga_fail(RUGA_BAD_INPUT, "skin.model: volume needs interior.motion: prescribed");
     }
+    if (def->follow.sample_count > 0) {
+        return ruga_fail(RUGA_BAD_INPUT, "skin.model: volume follows keyframes only, not a moving surface");
+    }
     for (int k = 0; k < def->keyframe_count; k++) {
         const ruga_keyframe_def* key = &def->keyframes[k];
         double off = 0, least = 1;

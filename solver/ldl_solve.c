@@ -14,24 +14,18 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/wide.h"
 
 #include <cblas.h>
 #include <math.h>
-
-// Twice as fast within the cache where the processor has the wider registers.
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__)
-#define WIDE_REGISTERS __attribute__((target_clones("avx2", "default")))
-#else
-#define WIDE_REGISTERS
-#endif
 
 enum { STRIP = 8, ROW_CHUNK = 256, COLUMN_CHUNK = 16, LARGE = 1 << 17 };
 
 // For panels of doubles and of floats, l [columns][stride]:
 // subtract: y[i] -= sum_k l[k][i] p[k], 0 <= i < rows. project: p[k] -= sum_i l[k][i] y[i], the sum by lanes.
 #define DEFINE_KERNELS(real, subtract, project)                                                              \
-    WIDE_REGISTERS static void subtract(const real* l, size_t stride, int rows, int columns,                 \
-                                        const double* p, double* y) {                                        \
+    RUGA_WIDE static void subtract(const real* l, size_t stride, int rows, int columns, const double* p,     \
+                                   double* y) {                                                              \
         int k = 0;                                                                                           \
         for (; k + STRIP <= columns; k += STRIP, l += STRIP * stride) {                                      \
             const real *a = l, *b = a + stride, *c = b + stride, *d = c + stride, *e = d + stride;           \
@@ -49,8 +43,8 @@ enum { STRIP = 8, ROW_CHUNK = 256, COLUMN_CHUNK = 16, LARGE = 1 << 17 };
             }                                                                                                \
         }                                                                                                    \
     }                                                                                                        \
-    WIDE_REGISTERS static void project(const real* l, size_t stride, int rows, int columns, const double* y, \
-                                       double* p) {                                                          \
+    RUGA_WIDE static void project(const real* l, size_t stride, int rows, int columns, const double* y,      \
+                                  double* p) {                                                               \
         int k = 0;                                                                                           \
         for (; k + STRIP / 2 <= columns; k += STRIP / 2, l += STRIP / 2 * stride) {                          \
             const real *a = l, *b = a + stride, *c = b + stride, *d = c + stride;                            \

@@ -35,8 +35,10 @@ static ruga_status check_motion(const ruga_model_def* def) {
                 return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.motion: dynamic", i);
             }
         }
-        return s->model == RUGA_SKIN_SPRINGS ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
-               : started ? ruga_fail(RUGA_BAD_INPUT, "start: needs skin.motion: dynamic; a static skin starts at rest")
+        return s->model == RUGA_SKIN_SPRINGS
+                   ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
+               : started ? ruga_fail(RUGA_BAD_INPUT,
+                                     "start: needs skin.motion: dynamic; a static skin starts at rest")
                          : RUGA_OK;
     }
     if (def->has_interior) {
@@ -45,7 +47,8 @@ static ruga_status check_motion(const ruga_model_def* def) {
         trouble = "goes with model: shell or springs";
     } else if (s->bending != RUGA_BENDING_HINGE) {
         trouble = "knows bending: hinge only";
-    } else if (s->vertex_thickness || s->vertex_young || s->vertex_growth || s->growth[0] != 1 || s->growth[1] != 1) {
+    } else if (s->vertex_thickness || s->vertex_young || s->vertex_growth || s->growth[0] != 1 ||
+               s->growth[1] != 1) {
         trouble = "knows one thickness and modulus and no growth yet";
     }
     if (trouble) {
@@ -55,8 +58,8 @@ static ruga_status check_motion(const ruga_model_def* def) {
     RUGA_TRY(require(s->damping >= 0 && isfinite(s->damping), "skin.damping", s->damping, "0 or above"));
     RUGA_TRY(require(s->drag >= 0 && isfinite(s->drag), "skin.drag", s->drag, "0 or above"));
     RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
-    RUGA_TRY(require(isfinite(ruga_norm(def->start.velocity)), "start.velocity", ruga_norm(def->start.velocity),
-                     "finite"));
+    RUGA_TRY(require(isfinite(ruga_norm(def->start.velocity)), "start.velocity",
+                     ruga_norm(def->start.velocity), "finite"));
     return require(def->start.cone >= 0 && def->start.cone < 2 * RUGA_PI, "start.cone", def->start.cone,
                    "between 0 and a whole turn");
 }
@@ -73,13 +76,14 @@ static ruga_status check_material(const ruga_model_def* def) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
     }
     RUGA_TRY(check_motion(def));
-    RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation", s->relaxation,
-                     "above 0"));
+    RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation",
+                     s->relaxation, "above 0"));
     if (!def->has_interior) {
         return RUGA_OK;
     }
     RUGA_TRY(require(positive(q->young), "interior.young", q->young, "above 0"));
-    RUGA_TRY(require(q->poisson > -1 && q->poisson < 0.5, "interior.poisson", q->poisson, "between -1 and 0.5"));
+    RUGA_TRY(
+        require(q->poisson > -1 && q->poisson < 0.5, "interior.poisson", q->poisson, "between -1 and 0.5"));
     RUGA_TRY(require(q->damping >= 0 && isfinite(q->damping), "interior.damping", q->damping, "0 or above"));
     bool massive = q->motion != RUGA_INTERIOR_DYNAMIC || q->density > 0;
     return require(massive && q->density >= 0 && isfinite(q->density), "interior.density", q->density,
@@ -96,8 +100,8 @@ static ruga_status check_numbers(const ruga_model_def* def) {
     if (!def->has_interior) {
         return RUGA_OK;
     }
-    RUGA_TRY(require(def->lattice.cells >= 1 && def->lattice.cells <= 1000, "lattice.cells", def->lattice.cells,
-                     "between 1 and 1000"));
+    RUGA_TRY(require(def->lattice.cells >= 1 && def->lattice.cells <= 1000, "lattice.cells",
+                     def->lattice.cells, "between 1 and 1000"));
     RUGA_TRY(require(def->lattice.degree == 1 || def->lattice.degree == 2, "lattice.degree",
                      def->lattice.degree, "1 or 2"));
     RUGA_TRY(require(def->lattice.depth >= 0 && isfinite(def->lattice.depth), "lattice.depth",
@@ -106,8 +110,12 @@ static ruga_status check_numbers(const ruga_model_def* def) {
                      "between 0 and the number of vertices"));
     RUGA_TRY(require(c->radius >= 0 && isfinite(c->radius), "coupling.radius", c->radius, "0 or above"));
     RUGA_TRY(require(c->sigma >= 0 && isfinite(c->sigma), "coupling.sigma", c->sigma, "0 or above"));
-    RUGA_TRY(require(def->interior.motion != RUGA_INTERIOR_PRESCRIBED || def->keyframe_count > 0,
+    RUGA_TRY(require(def->interior.motion != RUGA_INTERIOR_PRESCRIBED || def->keyframe_count > 0 ||
+                         def->follow.sample_count > 0,
                      "the number of prescribed keyframes", def->keyframe_count, "1 or above"));
+    RUGA_TRY(require(def->follow.sample_count == 0 || def->keyframe_count == 0,
+                     "the number of prescribed keyframes", def->keyframe_count,
+                     "0 where a surface is followed"));
     for (int k = 1; k < def->keyframe_count; k++) {
         RUGA_TRY(require(def->keyframes[k].time > def->keyframes[k - 1].time, "prescribed time",
                          def->keyframes[k].time, "above that of the keyframe before"));
@@ -125,7 +133,8 @@ static ruga_status check_creases(const ruga_model_def* def) {
     if (skin->model == RUGA_SKIN_VOLUME) {
         trouble = "skin.model: volume has no shell to crease";
     } else if (skin->bending != RUGA_BENDING_HINGE) {
-        trouble = "skin.bending: kirchhoff-love has one rotation for a whole edge, which creases divide; write hinge";
+        trouble = "skin.bending: kirchhoff-love has one rotation for a whole edge, which creases divide; "
+                  "write hinge";
     } else if (def->solver.method == RUGA_METHOD_PAPER) {
         trouble = "solver.method: paper is the published method, which knows no creases";
     } else if (def->has_interior && def->coupling.kind == RUGA_COUPLING_NONE && !def->coupling.foundation) {
@@ -247,9 +256,10 @@ static void hold_node(ruga_model* model, int node, int h) {
     }
 }
 
-// Whether a place of a piece is in the handle's region: a vertex that it selects, or a point between two of these, or
-// one that it contains.
-static bool place_is_in(const ruga_model* model, const ruga_cut_piece* piece, int place, int h, const bool* in) {
+// Whether a place of a piece is in the handle's region: a vertex that it selects, or a point between two of
+// these, or one that it contains.
+static bool place_is_in(const ruga_model* model, const ruga_cut_piece* piece, int place, int h,
+                        const bool* in) {
     const ruga_cut* cut = &model->creases->cut;
     int i = place / 2;
     if (place % 2 == 0) {
@@ -260,9 +270,9 @@ static bool place_is_in(const ruga_model* model, const ruga_cut_piece* piece, in
            ruga_region_contains_within(&model->handles[h].region, x, ruga_region_slack(model->sheet));
 }
 
-// A copy of a selected vertex is held where its piece has a vertex in the region itself; a piece that lies in the region
-// as a whole is held as a whole. So a crease across the rim of a region is held from both sides, and one that bounds a
-// region can turn.
+// A copy of a selected vertex is held where its piece has a vertex in the region itself; a piece that lies in
+// the region as a whole is held as a whole. So a crease across the rim of a region is held from both sides,
+// and one that bounds a region can turn.
 static void hold_pieces(ruga_model* model, int h, const bool* in) {
     const ruga_cut* cut = &model->creases->cut;
     for (int p = 0; p < cut->piece_count; p++) {
@@ -318,8 +328,9 @@ static int largest_component(const double v[3]) {
     return fabs(v[0]) >= fabs(v[1]) && fabs(v[0]) >= fabs(v[2]) ? 0 : fabs(v[1]) >= fabs(v[2]) ? 1 : 2;
 }
 
-// A folding sheet that nothing holds would drift and turn: six components of one triangle are held, which takes no
-// force. Its first corner; of the second what is across the edge between them; of the third the height.
+// A folding sheet that nothing holds would drift and turn: six components of one triangle are held, which
+// takes no force. Its first corner; of the second what is across the edge between them; of the third the
+// height.
 static void hold_in_space(ruga_model* model) {
     const int* t = model->mesh.triangle + 3 * (size_t)middle_triangle(model);
     const double* x[3];
@@ -361,7 +372,8 @@ static ruga_status build_skin_holds(ruga_model* model) {
         }
         hold_selected(model, h, count, selected, in);
     }
-    if (model->creases && !model->has_interior && !model->any_skin_held && model->skin.motion != RUGA_SKIN_DYNAMIC) {
+    if (model->creases && !model->has_interior && !model->any_skin_held &&
+        model->skin.motion != RUGA_SKIN_DYNAMIC) {
         hold_in_space(model);
     }
 done:
@@ -399,7 +411,8 @@ static ruga_status build_clusters(ruga_model* model) {
     if (c->kind == RUGA_COUPLING_SPECTRAL) {
         ruga_clusters_clear(&model->clusters);
         RUGA_TRY(ruga_progress("finding Laplacian eigenvectors", 0));
-        RUGA_TRY(ruga_clusters_create_spectral(model->sheet, &model->connectivity, c->count, &model->clusters));
+        RUGA_TRY(
+            ruga_clusters_create_spectral(model->sheet, &model->connectivity, c->count, &model->clusters));
     }
     return RUGA_OK;
 }
@@ -452,7 +465,8 @@ static ruga_status build_pieces_foundation(ruga_model* model, double modulus) {
         }
     }
     RUGA_TRY_DONE(ruga_creases_edges(&model->mesh, &edges));
-    RUGA_TRY_DONE(ruga_foundation_create_pieces(&model->mesh, &edges, creases->area, a, b, &model->foundation));
+    RUGA_TRY_DONE(
+        ruga_foundation_create_pieces(&model->mesh, &edges, creases->area, a, b, &model->foundation));
 done:
     ruga_connectivity_clear(&edges);
     ruga_release(a);
@@ -498,7 +512,7 @@ static ruga_status build_coupling(ruga_model* model) {
     return RUGA_OK;
 }
 
-static ruga_status build_interior(ruga_model* model) {
+static ruga_status build_interior(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(ruga_progress("building the lattice", 0));
     RUGA_TRY(ruga_lattice_create(model->sheet, &model->connectivity, &model->lattice_def, &model->lattice));
     if (!ruga_model_is_prescribed(model)) {
@@ -506,7 +520,16 @@ static ruga_status build_interior(ruga_model* model) {
                                   &model->rows));
     }
     if (model->creases) {
-        RUGA_TRY(ruga_lattice_copy_vertices(&model->lattice, model->mesh.vertex_count, model->creases->cut.source));
+        RUGA_TRY(ruga_lattice_copy_vertices(&model->lattice, model->mesh.vertex_count,
+                                            model->creases->cut.source));
+    }
+    if (ruga_model_is_prescribed(model) && def->follow.sample_count > 0) {
+        if (model->creases) {
+            return ruga_fail(RUGA_BAD_INPUT,
+                             "follow: a mesh that is cut by creases cannot follow a moving surface");
+        }
+        RUGA_TRY(ruga_follow_create(&model->lattice, &model->mesh, model->vertex_area, &def->follow,
+                                    &model->follow));
     }
     return build_coupling(model);
 }
@@ -519,17 +542,19 @@ static ruga_status build_dense(ruga_model* model, double depth) {
                           .depth = depth > 0 ? depth : 2 * model->wavelength};
     double cells = model->wavelength / (ruga_dense_side(&model->mesh) / def.cells);
     if (cells < 4 && !model->solver.allow_coarse) {
-        return ruga_fail(RUGA_BAD_INPUT,
-                         "the volume has %.2g cells per wrinkle wavelength (%.4g m), at least 4 are needed and 16 are "
-                         "good: give more lattice.cells, or set solver.allow_coarse",
-                         cells, model->wavelength);
+        return ruga_fail(
+            RUGA_BAD_INPUT,
+            "the volume has %.2g cells per wrinkle wavelength (%.4g m), at least 4 are needed and 16 are "
+            "good: give more lattice.cells, or set solver.allow_coarse",
+            cells, model->wavelength);
     }
     RUGA_TRY(ruga_progress("building the volume", 0));
     return ruga_dense_create(&model->mesh, &def, &model->dense);
 }
 
 double ruga_model_force_floor(const ruga_model* model) {
-    // A strain's round-off is that of positions over edges, so a nodal force has that of E h times the extent.
+    // A strain's round-off is that of positions over edges, so a nodal force has that of E h times the
+    // extent.
     double stiffness = model->skin.young * model->skin.thickness;
     double round_off = 0.25 * 0x1p-52 * model->extent * sqrt(3.0 * model->mesh.vertex_count);
     return stiffness * fmax(1e-8 * model->mean_edge, round_off / model->solver.tolerance);
@@ -561,7 +586,7 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
     RUGA_TRY_DONE(build_skin_holds(model));
     RUGA_TRY_DONE(build_loads(model));
     if (model->has_interior) {
-        RUGA_TRY_DONE(build_interior(model));
+        RUGA_TRY_DONE(build_interior(def, model));
         if (model->skin.model == RUGA_SKIN_VOLUME) {
             RUGA_TRY_DONE(build_dense(model, def->lattice.depth));
         }
@@ -599,6 +624,7 @@ void ruga_model_destroy(ruga_model** model_pointer) {
     ruga_clusters_clear(&model->clusters);
     ruga_rows_clear(&model->rows);
     ruga_dense_clear(&model->dense);
+    ruga_follow_clear(&model->follow);
     ruga_lattice_clear(&model->lattice);
     ruga_connectivity_clear(&model->connectivity);
     ruga_mesh_clear(&model->mesh);

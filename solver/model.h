@@ -13,6 +13,7 @@
 #include "mesh/mesh.h"
 #include "solver/creases.h"
 #include "solver/dense.h"
+#include "solver/follow.h"
 #include "ruga/ruga.h"
 
 enum { RUGA_MODEL_COOKIE = 0x52756761 };
@@ -48,6 +49,7 @@ struct ruga_model {
     ruga_start_def start;
     int keyframe_count;
     ruga_keyframe_def* keyframes;
+    ruga_follow follow; // count 0 where the interior follows no surface
     int handle_count;
     ruga_handle_def* handles; // with copies of names and vertex lists
     ruga_loads* loads;

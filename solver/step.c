@@ -397,6 +397,10 @@ static void finish_report(ruga_state* state, double begin, ruga_report* out) {
 
 static void pose_at(const ruga_state* state, double time, double* q) {
     const ruga_model* model = state->model;
+    if (model->follow.count > 0) {
+        ruga_follow_at(&model->follow, time, q);
+        return;
+    }
     ruga_motion_at(&model->lattice, model->center, model->keyframe_count, model->keyframes, time, q);
 }
 

@@ -152,6 +152,61 @@ static void bad_patterns_are_repaired_aloud(void** state) {
     ruga_crease_pattern_clear(&p);
 }
 
+static void assert_meshed_area(const ruga_crease_pattern* p, double area) {
+    ruga_mesh mesh;
+    assert_ok(ruga_crease_pattern_mesh(p, FILE_NAME, &mesh));
+    assert_near(ruga_mesh_area(&mesh), area, 1e-12 * area);
+    ruga_mesh_clear(&mesh);
+}
+
+#define RING       "[0,0],[4,0],[4,4],[0,4],[1,1],[3,1],[3,3],[1,3]"
+#define RING_EDGES "[0,1],[1,2],[2,3],[3,0],[4,5],[5,6],[6,7],[7,4]"
+
+static void borders_within_the_sheet_cut_holes(void** state) {
+    (void)state;
+    ruga_crease_pattern p;
+    // A hole that nothing joins to the outline, with an island in it and a closed crease around it.
+    read_text("{\"vertices_coords\": [" RING
+              ",[1.5,1.5],[2.5,1.5],[2,2.5],[0.5,0.5],[3.5,0.5],[3.5,3.5],[0.5,3.5]],"
+              "\"edges_vertices\": [" RING_EDGES ",[8,9],[9,10],[10,8],[11,12],[12,13],[13,14],[14,11]],"
+              "\"edges_assignment\": "
+              "[\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"M\",\"M\",\"M\",\"M\"]}",
+              &p);
+    assert_true(has_note(&p, "1 places within borders"));
+    assert_int_equal(p.face_count, 2);
+    assert_meshed_area(&p, 16 - 4 + 0.5);
+    ruga_crease_pattern_clear(&p);
+    // Creases from its corners to the outline; faces given, but for the hole, and not given.
+    static const char* const faces[] = {"", ",\"faces_vertices\": [[0,1,5,4],[1,2,6,5],[2,3,7,6],[3,0,4,7]]"};
+    for (int k = 0; k < 2; k++) {
+        char text[1024];
+        (void)snprintf(
+            text, sizeof text,
+            "{\"vertices_coords\": [" RING "], \"edges_vertices\": [" RING_EDGES
+            ",[0,4],[1,5],[2,6],[3,7]], \"edges_assignment\": [\"B\",\"B\",\"B\",\"B\",\"B\",\"B\","
+            "\"B\",\"B\",\"M\",\"V\",\"M\",\"V\"]%s}",
+            faces[k]);
+        read_text(text, &p);
+        assert_int_equal(p.face_count, 4);
+        assert_int_equal(p.note_count, k ? 0 : 2);
+        assert_meshed_area(&p, 12);
+        ruga_crease_pattern_clear(&p);
+    }
+    // A border across the sheet parts no paper from a hole; two sheets beside one another are two sheets.
+    read_text("{\"vertices_coords\": [[0,0],[1,0],[2,0],[2,1],[1,1],[0,1],[5,0],[6,0],[6,1]],"
+              "\"edges_vertices\": [[0,1],[1,2],[2,3],[3,4],[4,5],[5,0],[1,4],[6,7],[7,8],[8,6]],"
+              "\"edges_assignment\": [\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"B\"]}",
+              &p);
+    assert_int_equal(p.face_count, 3);
+    assert_meshed_area(&p, 2.5);
+    ruga_crease_pattern_clear(&p);
+    // A face that is missing by mistake: its creases say that there is paper.
+    read_text("{" SQUARE ", \"faces_vertices\": [[0,1,8,7],[1,2,3,8],[3,4,5,8]]}", &p);
+    assert_true(has_note(&p, "has a face on one side only"));
+    assert_int_equal(p.face_count, 4);
+    ruga_crease_pattern_clear(&p);
+}
+
 static void broken_files_are_refused_with_the_field(void** state) {
     (void)state;
     refuse_text("{", "not JSON");
@@ -377,17 +432,42 @@ static void refuse_drawing(const char* text, const char* sentence) {
 
 static void broken_drawings_are_refused_with_the_line(void** state) {
     (void)state;
-    refuse_drawing("", "no stroked lines");
+    refuse_drawing("<svg/>", "no stroked lines");
+    refuse_drawing("", "not XML: no element found");
     refuse_drawing("<svg>\n\n<path stroke='red' d='M0 0L1 x'/></svg>",
                    "svg:3: path data cannot be read from \"L1 x\" on");
     refuse_drawing("<svg><path stroke='red' d='L1 1'/></svg>", "\"L1 1\"");
     refuse_drawing("<svg><path stroke='red' d='M0 0L0x1 nan'/></svg>", "path data");
-    refuse_drawing("<svg>\n<line x1='0' stroke='red'", "svg:2: a tag does not end");
-    refuse_drawing("<svg><!-- ", "does not end");
-    refuse_drawing("<svg><!DOCTYPE [ >", "does not end");
+    refuse_drawing("<svg>\n<line x1='0' stroke='red'", "svg:2: not XML: unclosed token");
+    refuse_drawing("<svg><!-- ", "not XML: unclosed token");
+    refuse_drawing("<svg>\n<g>\n</svg>", "svg:3: not XML: mismatched tag");
+    refuse_drawing("<svg><a b='1' b='2'/></svg>", "not XML: duplicate attribute");
     refuse_drawing("<svg><g transform='turn(3)'></g></svg>", "transform cannot be read");
     refuse_drawing("<svg><polyline stroke='red' points='0 0 1 q'/></svg>", "list of points");
     refuse_drawing("<svg><line stroke='red' x2='1' y2='1'/></svg>", "no closed outline");
+}
+
+// Entities are put in, as drawing programs use them; those that double sixty times are refused at once.
+static void entities_are_put_in_but_cannot_blow_up(void** state) {
+    (void)state;
+    ruga_crease_pattern p;
+    draw_text("<!DOCTYPE svg [<!ENTITY m '#f00'><!ENTITY half '5'>]><svg>" SHEET
+              "<line stroke='&m;' x1='&half;' y1='0' x2='&half;' y2='10'/></svg>",
+              &p);
+    assert_near(length_of(&p, RUGA_ASSIGNMENT_MOUNTAIN), 10, 1e-12);
+    ruga_crease_pattern_clear(&p);
+    draw_text("<!DOCTYPE svg [<!ENTITY away SYSTEM 'file:///etc/hostname'>]><svg>" SHEET
+              "<style>&away;</style></svg>",
+              &p);
+    ruga_crease_pattern_clear(&p);
+    char text[8192] = "<!DOCTYPE svg [<!ENTITY e0 'some text that is to be repeated'>";
+    for (int k = 1; k <= 60; k++) {
+        size_t length = strlen(text);
+        (void)snprintf(text + length, sizeof text - length, "<!ENTITY e%d '&e%d;&e%d;'>", k, k - 1, k - 1);
+    }
+    size_t length = strlen(text);
+    (void)snprintf(text + length, sizeof text - length, "]><svg>" SHEET "<style>&e60;</style></svg>");
+    refuse_drawing(text, "amplification");
 }
 
 // ------------------------------------------------------------------------------- real patterns
@@ -618,6 +698,7 @@ int main(void) {
         cmocka_unit_test(a_plain_pattern_is_read_as_it_is),
         cmocka_unit_test(missing_faces_are_found_and_said),
         cmocka_unit_test(bad_patterns_are_repaired_aloud),
+        cmocka_unit_test(borders_within_the_sheet_cut_holes),
         cmocka_unit_test(broken_files_are_refused_with_the_field),
         cmocka_unit_test(frames_inherit),
         cmocka_unit_test(what_is_written_reads_back_to_the_bit),
@@ -625,6 +706,7 @@ int main(void) {
         cmocka_unit_test(strokes_say_what_lines_are),
         cmocka_unit_test(all_path_commands_and_transforms_are_drawn),
         cmocka_unit_test(broken_drawings_are_refused_with_the_line),
+        cmocka_unit_test(entities_are_put_in_but_cannot_blow_up),
         cmocka_unit_test(real_patterns_are_read_as_others_read_them),
         cmocka_unit_test(drawings_and_files_of_one_pattern_agree),
         cmocka_unit_test(real_patterns_can_be_cut_into_meshes_that_know_nothing_of_them),

@@ -654,31 +654,6 @@ static void numbers_do_not_depend_on_the_locale(void** state) {
     assert_true(before == after);
 }
 
-// docs/scene.md is made from the table; RUGA_WRITE_DOCS writes it anew.
-static void reference_is_up_to_date(void** state) {
-    (void)state;
-    ruga_string wanted = {0};
-    assert_ok(ruga_scene_reference(&wanted));
-    if (getenv("RUGA_WRITE_DOCS")) {
-        FILE* out = fopen(RUGA_SOURCE_DIR "/docs/scene.md", "w");
-        assert_non_null(out);
-        (void)fputs(wanted.data, out);
-        (void)fclose(out);
-    }
-    FILE* file = fopen(RUGA_SOURCE_DIR "/docs/scene.md", "r");
-    assert_non_null(file);
-    char* found = calloc(1, (size_t)wanted.length + 1000);
-    size_t length = fread(found, 1, (size_t)wanted.length + 999, file);
-    (void)fclose(file);
-    bool same = length == (size_t)wanted.length && memcmp(found, wanted.data, length) == 0;
-    free(found);
-    ruga_string_clear(&wanted);
-    if (!same) {
-        print_error("docs/scene.md is out of date: run RUGA_WRITE_DOCS=1 test_scene\n");
-        fail();
-    }
-}
-
 static const char all_keys[] =
     "ruga: 1\nskin: {thickness: 1 mm, young: 1 GPa, membrane: stvk, growth: [110 %, 0.9]}\n"
     "interior: {young: &y 2 kPa, poisson: 0.4, density: 1 g/cm^3, damping: 3 Hz}\n"
@@ -791,7 +766,6 @@ int main(void) {
         cmocka_unit_test(each_shows_every_key_with_its_value),
         cmocka_unit_test(aliases_are_copies),
         cmocka_unit_test(numbers_do_not_depend_on_the_locale),
-        cmocka_unit_test(reference_is_up_to_date),
         cmocka_unit_test(mutated_scenes_neither_crash_nor_leak),
         cmocka_unit_test(every_failing_allocation_is_survived),
     };

@@ -202,6 +202,19 @@ static void any_allocation_may_fail(void** state) {
     }
 }
 
+static void settings_are_read_without_the_mesh(void** state) {
+    (void)state;
+    static const char text[] = "mesh: {file: gone.obj, unit: mm}\nskin: {thickness: 3 mm, young: 7 MPa}\n"
+                               "interior: {young: 0.1 MPa}\nlattice: {cells: 9}\ngravity: [0, -9.81, 0]\n";
+    ruga_scene scene;
+    assert_status(ruga_scene_read_text(text, "scene.yaml", SCENES, 0, NULL, &scene), RUGA_BAD_INPUT);
+    assert_ok(ruga_scene_read_settings(text, "scene.yaml", &scene));
+    assert_true(scene.def.skin.young == 7e6 && scene.def.lattice.cells == 9 && scene.def.gravity[1] == -9.81);
+    assert_int_equal(scene.mesh.vertex_count, 0);
+    ruga_scene_clear(&scene);
+    assert_status(ruga_scene_read_settings("skin: {thicknes: 1 mm}", "scene.yaml", &scene), RUGA_BAD_INPUT);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_entries_there_are_no_arrays),
@@ -215,6 +228,7 @@ int main(void) {
         cmocka_unit_test(attributes_survive_a_file),
         cmocka_unit_test(a_texture_of_one_pixel_is_a_number),
         cmocka_unit_test(any_allocation_may_fail),
+        cmocka_unit_test(settings_are_read_without_the_mesh),
     };
     return cmocka_run_group_tests_name("scene_vary", tests, NULL, check_no_leak);
 }

@@ -27,6 +27,18 @@ static cairo_status_t collect(void* context, const unsigned char* bytes, unsigne
     return CAIRO_STATUS_SUCCESS;
 }
 
+static void set_font(cairo_t* cairo) {
+    // Hinting would make the metrics depend on the size in pixels, and so SVG and PNG differ.
+    cairo_font_options_t* options = cairo_font_options_create();
+    cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+    cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+    cairo_set_font_options(cairo, options);
+    cairo_font_options_destroy(options);
+    cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cairo, FONT_SIZE);
+}
+
 ruga_status ruga_canvas_open(const char* path, double width, double height, ruga_canvas* canvas) {
     *canvas = (ruga_canvas){.path = path, .vector = ends_in(path, ".svg"), .width = width, .height = height};
     if (!canvas->vector && !ends_in(path, ".png")) {
@@ -42,15 +54,7 @@ ruga_status ruga_canvas_open(const char* path, double width, double height, ruga
     if (!canvas->vector) {
         cairo_scale(canvas->cairo, PIXELS_PER_UNIT, PIXELS_PER_UNIT);
     }
-    // Hinting would make the metrics depend on the size in pixels, and so SVG and PNG differ.
-    cairo_font_options_t* options = cairo_font_options_create();
-    cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
-    cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
-    cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
-    cairo_set_font_options(canvas->cairo, options);
-    cairo_font_options_destroy(options);
-    cairo_select_font_face(canvas->cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(canvas->cairo, FONT_SIZE);
+    set_font(canvas->cairo);
     ruga_canvas_color(canvas, 0xffffff, 1);
     cairo_paint(canvas->cairo);
     return RUGA_OK;
@@ -116,6 +120,51 @@ ruga_status ruga_canvas_close(ruga_canvas* canvas, ruga_status status) {
     ruga_release(canvas->data);
     *canvas = (ruga_canvas){0};
     return status;
+}
+
+// ---- over a picture ------------------------------------------------------------------------------------
+
+ruga_status ruga_canvas_open_pixels(int width, int height, const unsigned char* pixel, ruga_canvas* canvas) {
+    *canvas = (ruga_canvas){.path = "the picture", .width = width, .height = height};
+    cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    canvas->cairo = cairo_create(surface);
+    cairo_surface_destroy(surface);
+    if (cairo_status(canvas->cairo) != CAIRO_STATUS_SUCCESS) {
+        cairo_destroy(canvas->cairo);
+        return ruga_fail(RUGA_NO_MEMORY, "out of memory for a picture of %d x %d pixels", width, height);
+    }
+    cairo_surface_flush(surface);
+    unsigned char* row = cairo_image_surface_get_data(surface);
+    for (int y = 0; y < height; y++, row += cairo_image_surface_get_stride(surface)) {
+        for (int x = 0; x < width; x++, pixel += 3) {
+            uint32_t value = (uint32_t)pixel[0] << 16 | (uint32_t)pixel[1] << 8 | pixel[2];
+            memcpy(row + 4 * (size_t)x, &value, sizeof value);
+        }
+    }
+    cairo_surface_mark_dirty(surface);
+    set_font(canvas->cairo);
+    return RUGA_OK;
+}
+
+ruga_status ruga_canvas_close_pixels(ruga_canvas* canvas, unsigned char* pixel) {
+    cairo_surface_t* surface = cairo_get_target(canvas->cairo);
+    cairo_status_t drawn = cairo_status(canvas->cairo);
+    cairo_surface_flush(surface);
+    const unsigned char* row = cairo_image_surface_get_data(surface);
+    for (int y = 0; y < (int)canvas->height; y++, row += cairo_image_surface_get_stride(surface)) {
+        for (int x = 0; x < (int)canvas->width; x++, pixel += 3) {
+            uint32_t value;
+            memcpy(&value, row + 4 * (size_t)x, sizeof value);
+            pixel[0] = (unsigned char)(value >> 16);
+            pixel[1] = (unsigned char)(value >> 8);
+            pixel[2] = (unsigned char)value;
+        }
+    }
+    cairo_destroy(canvas->cairo);
+    *canvas = (ruga_canvas){0};
+    return drawn == CAIRO_STATUS_SUCCESS
+               ? RUGA_OK
+               : ruga_fail(RUGA_LIBRARY, "the legend could not be drawn: %s", cairo_status_to_string(drawn));
 }
 
 // ---- drawing -------------------------------------------------------------------------------------------

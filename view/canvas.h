@@ -25,6 +25,10 @@ ruga_status ruga_canvas_open(const char* path, double width, double height, ruga
 // canvas.
 ruga_status ruga_canvas_close(ruga_canvas* canvas, ruga_status status);
 
+// Draws over a picture of pixels [height][width][3], a unit a pixel; close puts the drawing into them.
+ruga_status ruga_canvas_open_pixels(int width, int height, const unsigned char* pixel, ruga_canvas* canvas);
+ruga_status ruga_canvas_close_pixels(ruga_canvas* canvas, unsigned char* pixel);
+
 // 0xRRGGBB and opacity.
 void ruga_canvas_color(ruga_canvas* canvas, unsigned color, double opacity);
 // The point (x, y) is at `across` of the text's width and `up` of a capital's height, both in [0, 1]; turned

@@ -12,7 +12,7 @@ static const double MARKER = 3.6, SAMPLE = 26, LEGEND_ROW = 20;
 
 typedef struct page {
     const ruga_plot_def* def;
-    ruga_canvas canvas;
+    ruga_canvas* canvas;
     ruga_axis x, y;
 } page;
 
@@ -103,12 +103,12 @@ static void draw_markers(page* p, int k) {
     const ruga_plot_series* s = &p->def->series[k];
     for (int i = 0; i < s->count; i++) {
         if (shows(p, s, i)) {
-            trace_marker(&p->canvas, k % SHAPES, ruga_axis_place(&p->x, s->x[i]),
+            trace_marker(p->canvas, k % SHAPES, ruga_axis_place(&p->x, s->x[i]),
                          ruga_axis_place(&p->y, s->y[i]));
         }
     }
-    ruga_canvas_color(&p->canvas, series_color(p->def, k), 1);
-    cairo_fill(p->canvas.cairo);
+    ruga_canvas_color(p->canvas, series_color(p->def, k), 1);
+    cairo_fill(p->canvas->cairo);
 }
 
 static void set_dash(cairo_t* cairo, bool dashed) {
@@ -118,7 +118,7 @@ static void set_dash(cairo_t* cairo, bool dashed) {
 
 static void draw_line(page* p, int k) {
     const ruga_plot_series* s = &p->def->series[k];
-    cairo_t* cairo = p->canvas.cairo;
+    cairo_t* cairo = p->canvas->cairo;
     bool pen_down = false;
     for (int i = 0; i < s->count; i++) {
         if (!shows(p, s, i)) {
@@ -129,7 +129,7 @@ static void draw_line(page* p, int k) {
         (pen_down ? cairo_line_to : cairo_move_to)(cairo, x, y);
         pen_down = true;
     }
-    ruga_canvas_color(&p->canvas, series_color(p->def, k), 1);
+    ruga_canvas_color(p->canvas, series_color(p->def, k), 1);
     cairo_set_line_width(cairo, 1.5);
     cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
     set_dash(cairo, s->style == RUGA_PLOT_DASHED);
@@ -147,53 +147,53 @@ static void draw_band(page* p, int k) {
     const ruga_plot_series* s = &p->def->series[k];
     for (int first = 0, next; first < s->count; first = next + 1) {
         for (next = first; next < s->count && has_range(p, s, next); next++) {
-            cairo_line_to(p->canvas.cairo, ruga_axis_place(&p->x, s->x[next]),
+            cairo_line_to(p->canvas->cairo, ruga_axis_place(&p->x, s->x[next]),
                           ruga_axis_place(&p->y, s->high[next]));
         }
         for (int i = next - 1; i >= first; i--) {
-            cairo_line_to(p->canvas.cairo, ruga_axis_place(&p->x, s->x[i]),
+            cairo_line_to(p->canvas->cairo, ruga_axis_place(&p->x, s->x[i]),
                           ruga_axis_place(&p->y, s->low[i]));
         }
-        cairo_close_path(p->canvas.cairo);
+        cairo_close_path(p->canvas->cairo);
     }
-    ruga_canvas_color(&p->canvas, series_color(p->def, k), 0.16);
-    cairo_fill(p->canvas.cairo);
+    ruga_canvas_color(p->canvas, series_color(p->def, k), 0.16);
+    cairo_fill(p->canvas->cairo);
 }
 
 static void draw_bars(page* p, int k) {
     const ruga_plot_series* s = &p->def->series[k];
-    ruga_canvas_color(&p->canvas, series_color(p->def, k), 1);
-    cairo_set_line_width(p->canvas.cairo, 1);
+    ruga_canvas_color(p->canvas, series_color(p->def, k), 1);
+    cairo_set_line_width(p->canvas->cairo, 1);
     for (int i = 0; i < s->count; i++) {
         if (has_range(p, s, i)) {
             double x = ruga_axis_place(&p->x, s->x[i]);
             double low = ruga_axis_place(&p->y, s->low[i]), high = ruga_axis_place(&p->y, s->high[i]);
-            ruga_canvas_line(&p->canvas, x, low, x, high);
-            ruga_canvas_line(&p->canvas, x - 3, low, x + 3, low);
-            ruga_canvas_line(&p->canvas, x - 3, high, x + 3, high);
+            ruga_canvas_line(p->canvas, x, low, x, high);
+            ruga_canvas_line(p->canvas, x - 3, low, x + 3, low);
+            ruga_canvas_line(p->canvas, x - 3, high, x + 3, high);
         }
     }
 }
 
 static void draw_reference(page* p, double x0, double x1, double y) {
     static const double pattern[2] = {2, 3};
-    ruga_canvas_color(&p->canvas, 0x444444, 1);
-    cairo_set_line_width(p->canvas.cairo, 1.2);
-    cairo_set_dash(p->canvas.cairo, pattern, 2, 0);
-    ruga_canvas_line(&p->canvas, x0, y, x1, y);
-    set_dash(p->canvas.cairo, false);
+    ruga_canvas_color(p->canvas, 0x444444, 1);
+    cairo_set_line_width(p->canvas->cairo, 1.2);
+    cairo_set_dash(p->canvas->cairo, pattern, 2, 0);
+    ruga_canvas_line(p->canvas, x0, y, x1, y);
+    set_dash(p->canvas->cairo, false);
 }
 
 // `margin`: a marker on the frame is seen whole.
 static void clip_to_frame(page* p, double margin) {
-    cairo_rectangle(p->canvas.cairo, p->x.from - margin, p->y.to - margin, p->x.to - p->x.from + 2 * margin,
+    cairo_rectangle(p->canvas->cairo, p->x.from - margin, p->y.to - margin, p->x.to - p->x.from + 2 * margin,
                     p->y.from - p->y.to + 2 * margin);
-    cairo_clip(p->canvas.cairo);
+    cairo_clip(p->canvas->cairo);
 }
 
 static void draw_data(page* p) {
     const ruga_plot_def* d = p->def;
-    cairo_save(p->canvas.cairo);
+    cairo_save(p->canvas->cairo);
     clip_to_frame(p, 0);
     for (int k = 0; k < d->series_count; k++) {
         if (d->series[k].low && d->series[k].high) {
@@ -210,15 +210,15 @@ static void draw_data(page* p) {
             draw_line(p, k);
         }
     }
-    cairo_restore(p->canvas.cairo);
-    cairo_save(p->canvas.cairo);
+    cairo_restore(p->canvas->cairo);
+    cairo_save(p->canvas->cairo);
     clip_to_frame(p, 1.5 * MARKER);
     for (int k = 0; k < d->series_count; k++) {
         if (d->series[k].style <= RUGA_PLOT_MARKERS) {
             draw_markers(p, k);
         }
     }
-    cairo_restore(p->canvas.cairo);
+    cairo_restore(p->canvas->cairo);
 }
 
 // ---- legend --------------------------------------------------------------------------------------------
@@ -227,32 +227,32 @@ static double legend_width(page* p) {
     double widest = 0;
     for (int k = 0; k < p->def->series_count; k++) {
         const char* name = p->def->series[k].name;
-        widest = fmax(widest, name ? ruga_canvas_text_width(&p->canvas, name) : 0);
+        widest = fmax(widest, name ? ruga_canvas_text_width(p->canvas, name) : 0);
     }
     for (int k = 0; k < p->def->reference_count; k++) {
         const char* name = p->def->references[k].name;
-        widest = fmax(widest, name ? ruga_canvas_text_width(&p->canvas, name) : 0);
+        widest = fmax(widest, name ? ruga_canvas_text_width(p->canvas, name) : 0);
     }
     return widest > 0 ? widest + SAMPLE + 30 : 0;
 }
 
 static void draw_series_sample(page* p, int k, double x, double y) {
     const ruga_plot_series* s = &p->def->series[k];
-    cairo_t* cairo = p->canvas.cairo;
+    cairo_t* cairo = p->canvas->cairo;
     if (s->low && s->high && !s->bars) {
-        ruga_canvas_color(&p->canvas, series_color(p->def, k), 0.16);
+        ruga_canvas_color(p->canvas, series_color(p->def, k), 0.16);
         cairo_rectangle(cairo, x, y - 6, SAMPLE, 12);
         cairo_fill(cairo);
     }
-    ruga_canvas_color(&p->canvas, series_color(p->def, k), 1);
+    ruga_canvas_color(p->canvas, series_color(p->def, k), 1);
     if (s->style != RUGA_PLOT_MARKERS) {
         cairo_set_line_width(cairo, 1.5);
         set_dash(cairo, s->style == RUGA_PLOT_DASHED);
-        ruga_canvas_line(&p->canvas, x, y, x + SAMPLE, y);
+        ruga_canvas_line(p->canvas, x, y, x + SAMPLE, y);
         set_dash(cairo, false);
     }
     if (s->style <= RUGA_PLOT_MARKERS) {
-        trace_marker(&p->canvas, k % SHAPES, x + 0.5 * SAMPLE, y);
+        trace_marker(p->canvas, k % SHAPES, x + 0.5 * SAMPLE, y);
         cairo_fill(cairo);
     }
 }
@@ -263,36 +263,74 @@ static void draw_legend(page* p) {
     for (int k = 0; k < p->def->series_count; k++) {
         if (p->def->series[k].name) {
             draw_series_sample(p, k, x, y);
-            ruga_canvas_color(&p->canvas, 0x000000, 1);
-            ruga_canvas_text(&p->canvas, x + SAMPLE + 6, y, 0, 0.5, 0, p->def->series[k].name);
+            ruga_canvas_color(p->canvas, 0x000000, 1);
+            ruga_canvas_text(p->canvas, x + SAMPLE + 6, y, 0, 0.5, 0, p->def->series[k].name);
             y += LEGEND_ROW;
         }
     }
     for (int k = 0; k < p->def->reference_count; k++) {
         if (p->def->references[k].name) {
             draw_reference(p, x, x + SAMPLE, y);
-            ruga_canvas_color(&p->canvas, 0x000000, 1);
-            ruga_canvas_text(&p->canvas, x + SAMPLE + 6, y, 0, 0.5, 0, p->def->references[k].name);
+            ruga_canvas_color(p->canvas, 0x000000, 1);
+            ruga_canvas_text(p->canvas, x + SAMPLE + 6, y, 0, 0.5, 0, p->def->references[k].name);
             y += LEGEND_ROW;
         }
     }
 }
 
-ruga_status ruga_plot_write(const ruga_plot_def* def, const char* path) {
-    page p = {.def = def};
-    RUGA_TRY(fit_axes(&p));
-    RUGA_TRY(ruga_canvas_open(path, def->width > 0 ? def->width : 720, def->height > 0 ? def->height : 450,
-                              &p.canvas));
-    p.x.from = 78;
-    p.x.to = p.canvas.width - fmax(legend_width(&p), 22);
-    p.y.from = p.canvas.height - 54;
-    p.y.to = def->title ? 38 : 18;
-    ruga_axis_draw_frame(&p.canvas, &p.x, &p.y, true, def->x.name, def->y.name);
-    draw_data(&p);
-    draw_legend(&p);
+static double width_of(const ruga_plot_def* def) {
+    return def->width > 0 ? def->width : 720;
+}
+
+static double height_of(const ruga_plot_def* def) {
+    return def->height > 0 ? def->height : 450;
+}
+
+// Within the canvas, from the place that cairo was moved to.
+static void draw_plot(page* p) {
+    const ruga_plot_def* def = p->def;
+    p->x.from = 78;
+    p->x.to = width_of(def) - fmax(legend_width(p), 22);
+    p->y.from = height_of(def) - 54;
+    p->y.to = def->title ? 38 : 18;
+    ruga_axis_draw_frame(p->canvas, &p->x, &p->y, true, def->x.name, def->y.name);
+    draw_data(p);
+    draw_legend(p);
     if (def->title) {
-        ruga_canvas_color(&p.canvas, 0x000000, 1);
-        ruga_canvas_text(&p.canvas, 0.5 * (p.x.from + p.x.to), 20, 0.5, 0.5, 0, def->title);
+        ruga_canvas_color(p->canvas, 0x000000, 1);
+        ruga_canvas_text(p->canvas, 0.5 * (p->x.from + p->x.to), 20, 0.5, 0.5, 0, def->title);
     }
-    return ruga_canvas_close(&p.canvas, RUGA_OK);
+}
+
+ruga_status ruga_plot_write_page(int count, const ruga_plot_def* defs, int columns, const char* path) {
+    double width = 0, height = 0, row = 0, across = 0;
+    ruga_canvas canvas;
+    for (int k = 0; k < count; k++) {
+        page p = {.def = &defs[k]};
+        RUGA_TRY(fit_axes(&p)); // before anything is written
+        across = k % columns == 0 ? width_of(&defs[k]) : across + width_of(&defs[k]);
+        row = k % columns == 0 ? height_of(&defs[k]) : fmax(row, height_of(&defs[k]));
+        width = fmax(width, across);
+        height += k % columns == columns - 1 || k == count - 1 ? row : 0;
+    }
+    RUGA_TRY(ruga_canvas_open(path, width, height, &canvas));
+    ruga_status status = RUGA_OK;
+    double x = 0, y = 0;
+    for (int k = 0; k < count && status == RUGA_OK; k++) {
+        page p = {.def = &defs[k], .canvas = &canvas};
+        status = fit_axes(&p);
+        cairo_save(canvas.cairo);
+        cairo_translate(canvas.cairo, x, y);
+        draw_plot(&p);
+        cairo_restore(canvas.cairo);
+        bool last = k % columns == columns - 1;
+        row = k % columns == 0 ? height_of(&defs[k]) : fmax(row, height_of(&defs[k]));
+        x = last ? 0 : x + width_of(&defs[k]);
+        y += last ? row : 0;
+    }
+    return ruga_canvas_close(&canvas, status);
+}
+
+ruga_status ruga_plot_write(const ruga_plot_def* def, const char* path) {
+    return ruga_plot_write_page(1, def, 1, path);
 }

@@ -49,6 +49,8 @@ typedef struct ruga_plot_def {
 
 // RUGA_BAD_INPUT where a series has no point that the axes can show.
 ruga_status ruga_plot_write(const ruga_plot_def* def, const char* path);
+// Several on one page, side by side in rows of `columns`, each of its own size.
+ruga_status ruga_plot_write_page(int count, const ruga_plot_def* defs, int columns, const char* path);
 
 // Lines of equal value. Between the points of the grid the value runs linearly along the axes as they are
 // drawn.

@@ -80,7 +80,7 @@ static ruga_status fit_axes(page* p) {
 
 static void set_value_color(page* p, double value) {
     double rgb[3];
-    ruga_colormap((value - p->color.min) / (p->color.max - p->color.min), rgb);
+    ruga_colormap(RUGA_COLORMAP_DIVERGING, (value - p->color.min) / (p->color.max - p->color.min), rgb);
     ruga_canvas_color(
         &p->canvas, (unsigned)ruga_srgb(rgb[0]) << 16 | (unsigned)ruga_srgb(rgb[1]) << 8 | ruga_srgb(rgb[2]),
         1);

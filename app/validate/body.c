@@ -69,9 +69,11 @@ ruga_status ruga_body_picture(ruga_body* body, double azimuth, double elevation,
     def.azimuth = azimuth;
     def.elevation = elevation;
     if (scale > 0) {
-        RUGA_TRY(ruga_body_measure(body, &def.scalar));
-        def.scalar_min = -scale;
-        def.scalar_max = scale;
+        RUGA_TRY(ruga_body_measure(body, &def.scalar.value));
+        def.scalar.min = -scale;
+        def.scalar.max = scale;
+        def.scalar.name = "displacement, mm";
+        def.scalar.unit = 1e-3;
     }
     return ruga_render_png(&body->mesh, ruga_state_positions(body->state), &def, path);
 }

@@ -300,9 +300,7 @@ static ruga_status draw(ruga_validation* v, const sheet* s, const char* suffix, 
     def.height = 350;
     def.azimuth = -RUGA_PI / 2;
     def.elevation = 50 * RUGA_PI / 180;
-    def.scalar = w;
-    def.scalar_min = -most;
-    def.scalar_max = most;
+    def.scalar = (ruga_scale){.value = w, .min = -most, .max = most, .name = "displacement, mm", .unit = 1e-3};
     ruga_validation_file(v, suffix, caption, path);
     return ruga_render_png(&s->mesh, ruga_state_positions(s->state), &def, path);
 }

@@ -583,13 +583,14 @@ static ruga_status draw_sheet(const bench* b, const char* path) {
     RUGA_TRY(RUGA_NEW(height, b->patch.mesh.vertex_count));
     for (int v = 0; v < b->patch.mesh.vertex_count; v++) {
         height[v] = x[3 * (size_t)v + 2];
-        def.scalar_max = fmax(def.scalar_max, fabs(height[v]));
+        def.scalar.max = fmax(def.scalar.max, fabs(height[v]));
     }
     def.width = 700;
     def.height = 500;
     def.elevation = 60 * RUGA_PI / 180;
-    def.scalar = height;
-    def.scalar_min = -def.scalar_max;
+    def.scalar.value = height;
+    def.scalar.min = -def.scalar.max;
+    def.scalar.name = "height, m";
     ruga_status status = ruga_render_png(&b->patch.mesh, x, &def, path);
     ruga_release(height);
     return status;

@@ -84,6 +84,17 @@ typedef struct ruga_keyframe_def {
     double bump_direction[3]; // need not be of unit length
 } ruga_keyframe_def;
 
+// A moving surface that the interior follows in place of keyframes. The samples are asked for in order while a model is
+// created; another status than RUGA_OK ends that.
+typedef ruga_status ruga_sample_function(int sample, double* positions, void* context);
+typedef struct ruga_motion_def {
+    int sample_count;           // 0 = none
+    const double* times;        // [sample_count] s, ascending: linear in between, held outside
+    ruga_sample_function* read; // positions [vertex_count][3] m of the mesh's vertices
+    void* context;
+    double smoothness; // > 0: weight of the lattice's second differences beside the distance to the surface
+} ruga_motion_def;
+
 typedef enum ruga_membrane { RUGA_MEMBRANE_BARAFF_WITKIN, RUGA_MEMBRANE_STVK } ruga_membrane;
 typedef enum ruga_bending { RUGA_BENDING_HINGE, RUGA_BENDING_KIRCHHOFF_LOVE } ruga_bending;
 // RUGA_SKIN_DYNAMIC is for a free shell.
@@ -233,6 +244,7 @@ typedef struct ruga_model_def {
     ruga_coupling_def coupling;
     int keyframe_count;
     const ruga_keyframe_def* keyframes;
+    ruga_motion_def follow;
     double step; // s, > 0
     int frames;  // >= 1
     double gravity[3];

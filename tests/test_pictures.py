@@ -1,0 +1,233 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 The Ruga authors
+"""`ruga render`, `plot`, `view` and `run --preview` as a user calls them.
+
+    test_pictures.py RUGA SOURCE_DIR
+"""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+RUGA, SOURCE = (os.path.abspath(path) for path in (sys.argv.pop(1), sys.argv.pop(1)))
+SCENE = """
+mesh:       {make: {shape: sheet, size: [12 cm, 4 cm], edge: 4 mm}}
+skin:       {thickness: 2 mm, young: 40 MPa}
+interior:   {young: 0.5 MPa, motion: prescribed}
+lattice:    {fill: box}
+prescribed: [{time: 0 s}, {time: 60 ms, stretch: [0.92, 1, 1]}]
+time:       {step: 20 ms, frames: 3}
+"""
+SHELL = """
+mesh:     {make: {shape: sheet, size: [12 cm, 4 cm], edge: 8 mm}}
+skin:     {thickness: 1 mm, young: 1 MPa}
+interior: none
+gravity:  [0, -9.81, 0]
+handles:  [{region: {plane: {center: [-5 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}]
+time:     {step: 20 ms, frames: 1}
+"""
+SIZE = ("--width", "120", "--height", "90")
+
+
+def add_creases(path):
+    """A copy of the result with what a sheet that is folded along its edges has besides."""
+    other = path.replace(".h5", "_creased.h5")
+    shutil.copy(path, other)
+    with h5py.File(other, "r+") as file:
+        triangles, frames = file["mesh/triangles"][:], file["frames/time"].shape[0]
+        inner, seen = [], set()
+        for a, b, c in triangles:
+            for edge in ((a, b), (b, c), (c, a)):
+                key = tuple(sorted(edge))
+                if key in seen:
+                    inner.append(key)
+                seen.add(key)
+        segments = numpy.array(inner[:40], dtype=numpy.int32)
+        angle = numpy.outer(numpy.arange(frames), numpy.where(numpy.arange(40) % 3, 0.3, -0.2))
+        file["creases/segments"] = segments
+        file["creases/angle"] = angle
+        file["stats/handle_force"] = numpy.ones((frames, 2, 3)) * numpy.arange(frames)[:, None, None]
+    return other
+
+
+class Pictures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = cls.scratch.name
+        for name, text in (("sheet", SCENE), ("shell", SHELL)):
+            with open(cls.path(name + ".yaml"), "w", encoding="utf-8") as file:
+                file.write(text)
+            done = cls.call("run", name + ".yaml", "-o", name + ".h5", "--quiet")
+            assert done.returncode in (0, 1), done.stderr
+        cls.creased = add_creases(cls.path("sheet.h5"))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder, name)
+
+    @classmethod
+    def call(cls, *words, **more):
+        return subprocess.run([RUGA, *map(str, words)], cwd=cls.folder, capture_output=True, text=True, timeout=300,
+                              check=False, **more)
+
+    def ruga(self, *words, **more):
+        done = self.call(*words, **more)
+        self.assertEqual(done.returncode, 0, f"{words}\n{done.stderr}")
+        return done.stdout
+
+    def refused(self, *words, saying, **more):
+        done = self.call(*words, **more)
+        self.assertEqual(done.returncode, 2, f"{words}\n{done.stdout}{done.stderr}")
+        self.assertRegex(done.stderr, r"\Aruga: .+\n\Z")
+        self.assertRegex(done.stderr, saying)
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    # ---- render ----------------------------------------------------------------------------------------
+
+    def test_each_colouring_has_its_picture_and_says_its_scale(self):
+        saying = {"clay": r"\A\S+png\n\Z", "displacement": r"colours from -\S+ to \S+: displacement, mm",
+                  "stress": r"colours from 0 to \S+: von Mises stress, [kM]Pa", "clusters": r"\d+ clusters, ",
+                  "elements": r"\d+ elements of \S+ x \S+ x \S+ mm, 0 of them superimposed"}
+        seen = set()
+        for color, text in saying.items():
+            self.assertRegex(self.ruga("render", "sheet.h5", "--color", color, *SIZE, "-o", color + ".png"), text)
+            seen.add(self.read(color + ".png"))
+        self.assertRegex(self.ruga("render", self.creased, "--color", "creases", *SIZE, "-o", "creases.png"),
+                         "colours from -51.57 to 51.57: fold angle, deg")
+        seen.add(self.read("creases.png"))
+        for more in ("--wireframe", "--plain", "--camera=top", "--up=x"):
+            self.ruga("render", "sheet.h5", more, *SIZE, "-o", "more.png")
+            seen.add(self.read("more.png"))
+        self.assertEqual(len(seen), 10)
+
+    def test_what_a_result_has_not_is_refused(self):
+        self.refused("render", "sheet.h5", "--color", "creases", "-o", "a.png", saying="no creases")
+        self.refused("render", "sheet.h5", "--color", "young", "-o", "a.png", saying="does not vary")
+        for color in ("displacement", "clusters", "elements"):
+            self.refused("render", "shell.h5", "--color", color, "-o", "a.png", saying="no interior")
+        self.refused("render", "sheet.h5", "--color", "mud", "-o", "a.png", saying="none of clay")
+        self.refused("render", "sheet.h5", "--camera", "there", "-o", "a.png", saying="azimuth,elevation")
+        self.refused("render", "sheet.h5", "--camera", "0deg,120deg", "-o", "a.png", saying="-90 and 90")
+        self.refused("render", "sheet.h5", "--turntable", "3", "-o", "a.png", saying="%04d")
+        self.refused("render", "sheet.h5", saying="-o PNG is missing")
+        self.assertFalse(os.path.exists(self.path("a.png")))
+        broken = self.path("broken.h5")
+        shutil.copy(self.creased, broken)
+        with h5py.File(broken, "r+") as file:
+            file["creases/segments"][3] = [0, 10 ** 6]
+        self.refused("render", broken, "--color", "creases", "-o", "a.png", saying="segment 3 of /creases/segments")
+
+    def test_frames_and_turntables_have_numbered_pictures(self):
+        self.ruga("render", "sheet.h5", "--frames", "1:2", *SIZE, "-o", "f%d.png")
+        self.assertFalse(os.path.exists(self.path("f0.png")))
+        self.assertNotEqual(self.read("f1.png"), self.read("f2.png"))
+        self.ruga("render", "sheet.h5", "--turntable", "4", *SIZE, "-o", "t%d.png")
+        self.assertEqual(len({self.read(f"t{i}.png") for i in range(4)}), 4)
+        self.assertFalse(os.path.exists(self.path("t4.png")))
+
+    def test_threads_do_not_change_a_picture(self):
+        for threads in (1, 2, 3):
+            self.ruga("render", "sheet.h5", "--threads", threads, "--color", "stress", *SIZE, "-o", f"n{threads}.png")
+        self.assertEqual(self.read("n1.png"), self.read("n2.png"))
+        self.assertEqual(self.read("n1.png"), self.read("n3.png"))
+
+    def test_films_need_ffmpeg_and_hold_every_frame(self):
+        self.refused("render", "sheet.h5", "--movie", "no.mp4", saying="ffmpeg", env={**os.environ, "PATH": "/nowhere"})
+        self.assertFalse(os.path.exists(self.path("no.mp4")) or os.path.exists(self.path("no.mp4.part")))
+        if not shutil.which("ffmpeg"):
+            self.skipTest("ffmpeg is not installed")
+        self.ruga("render", "sheet.h5", "--movie", "a.mp4", "--width", "121", "--height", "91")
+        said = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries",
+                               "stream=nb_read_frames,width,height,r_frame_rate", "-of", "default=nw=1",
+                               self.path("a.mp4")], capture_output=True, text=True, check=True).stdout
+        self.assertEqual(dict(line.split("=") for line in said.split()),
+                         {"width": "122", "height": "92", "r_frame_rate": "50/1", "nb_read_frames": "4"})
+
+    # ---- plot ------------------------------------------------------------------------------------------
+
+    def test_plots_of_a_result(self):
+        self.ruga("plot", "sheet.h5", "-o", "all.svg")
+        self.ruga("plot", "sheet.h5", "--what", "energy", "-o", "one.svg")
+        self.ruga("plot", self.creased, "--what", "angle,force", "-o", "fold.png")
+        self.assertGreater(len(self.read("all.svg")), 3 * len(self.read("one.svg")))
+        self.assertEqual(self.read("fold.png")[:8], b"\x89PNG\r\n\x1a\n")
+        before = self.read("all.svg")
+        self.ruga("plot", "sheet.h5", "--what", "energy,residual,iterations,wavelength,amplitude", "-o", "all.svg")
+        again = self.read("all.svg")
+        self.assertNotEqual(again, before)  # without the seconds
+        self.ruga("plot", "sheet.h5", "--what", "energy,residual,iterations,wavelength,amplitude", "-o", "all.svg")
+        self.assertEqual(self.read("all.svg"), again)
+        self.refused("plot", "sheet.h5", "--what", "angle", "-o", "a.svg", saying="nothing of it")
+        self.refused("plot", "shell.h5", "--what", "wavelength", "-o", "a.svg", saying="nothing of it")
+        self.refused("plot", "sheet.h5", "--what", "engery", "-o", "a.svg", saying="did you mean energy")
+        self.refused("plot", "sheet.h5", "-o", "a.gif", saying=".svg or .png")
+
+    def test_plots_of_a_table(self):
+        with open(self.path("t.csv"), "w", encoding="utf-8") as file:
+            file.write("thickness,young,outcome,wavelength\n" + "".join(
+                f"{k},{k * k},minimum,{3 * k}\n" for k in (1, 2, 4)))
+        self.ruga("plot", "t.csv", "-o", "t.svg")
+        self.ruga("plot", "t.csv", "--x", "young", "--what", "thickness+wavelength,wavelength", "--log", "xy", "-o", "u.svg")
+        self.refused("plot", "t.csv", "--what", "wavelengt", "-o", "v.svg", saying="did you mean wavelength")
+        self.refused("plot", "t.csv", "--what", "outcome", "-o", "v.svg", saying="no point to draw")
+        self.refused("plot", "none.csv", "-o", "v.svg", saying="cannot be read")
+        self.assertFalse(os.path.exists(self.path("v.svg")))
+
+    # ---- the rest --------------------------------------------------------------------------------------
+
+    def test_previews_come_with_the_frames_and_change_nothing(self):
+        self.ruga("run", "sheet.yaml", "-o", "seen.h5", "--preview", "seen", "--quiet")
+        self.assertEqual(sorted(os.listdir(self.path("seen"))), [f"frame_000{k}.png" for k in range(4)])
+        with h5py.File(self.path("seen.h5")) as a, h5py.File(self.path("sheet.h5")) as b:
+            self.assertTrue(numpy.array_equal(a["shell/position"][:], b["shell/position"][:]))
+        self.refused("run", "sheet.yaml", "-o", "x.h5", "--preview", "no/such/place", saying="--preview")
+        self.assertFalse(os.path.exists(self.path("x.h5")))
+
+    def test_view_writes_a_page_or_says_why_not(self):
+        done = self.call("view", "sheet.h5", "-o", "page.html")
+        if "without npm" in done.stderr:
+            self.assertEqual(done.returncode, 2)
+            self.skipTest("ruga was built without npm")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = self.read("page.html").decode()
+        self.assertNotRegex(page, r"""(?i)(?:src|href)\s*=\s*["']?https?:""")
+        self.assertEqual(len(re.findall(r'<script type="application/octet-stream" id="', page)), 4)
+        self.refused("view", "sheet.h5", "--frames", "2:9", "-o", "p.html", saying="0:3")
+
+    def test_gallery_script_remakes_one_picture(self):
+        root = self.path("tree")
+        os.makedirs(os.path.join(root, "examples"))
+        os.makedirs(os.path.join(root, "script"))
+        shutil.copy(os.path.join(SOURCE, "script/gallery"), os.path.join(root, "script/gallery"))
+        for name, head in (("one", "# A sheet, squeezed. More of it."), ("two", "# Another one\n# gallery: none")):
+            with open(os.path.join(root, "examples", name + ".yaml"), "w", encoding="utf-8") as file:
+                file.write(head + "\n" + SCENE)
+        with open(os.path.join(root, "README.md"), "w", encoding="utf-8") as file:
+            file.write("before\n<!-- gallery -->\nold\n<!-- end of the gallery -->\nafter\n")
+        done = subprocess.run(["script/gallery"], cwd=root, capture_output=True, text=True, check=False, timeout=300,
+                              env={**os.environ, "RUGA": RUGA})
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(os.listdir(os.path.join(root, "docs/gallery")), ["one.png"])
+        with open(os.path.join(root, "README.md"), encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn("[one](examples/one.yaml): A sheet, squeezed |", text)
+        self.assertTrue(text.startswith("before\n") and text.endswith("after\n") and "old" not in text)
+
+
+if __name__ == "__main__":
+    unittest.main()
