@@ -24,8 +24,10 @@
 enum { SIZE_MAX_TEXELS = 16384, MAPS_MAX = 64, BLEND_SIZE = 256 };
 static const double LEAST_SLOPE_NORMAL = 0.05; // a normal further over has no slope to blend
 
+static const char map_names[] = "displacement|normal|tension|ao";
+
 static const ruga_option options[] = {
-    {"--map", NULL, "NAME",
+    {"--map", NULL, map_names,
      "displacement: vectors in the base's tangent space; normal: in tangent space;\n"
      "tension: largest and smallest principal stretch and area ratio, each less 1;\n"
      "ao: the part of the sky that is seen [displacement]",
@@ -121,7 +123,7 @@ static ruga_status choose_numbers(job* j) {
     j->def.samples = 64;
     j->def.margin = 16;
     j->def.sky = INFINITY;
-    RUGA_TRY(ruga_option_choice(j->arguments, "--map", "displacement|normal|tension|ao", &map));
+    RUGA_TRY(ruga_option_choice(j->arguments, "--map", map_names, &map));
     j->def.map = (ruga_bake_map)map;
     RUGA_TRY(ruga_integer(j->arguments, "--size", 4, SIZE_MAX_TEXELS, &j->size));
     RUGA_TRY(ruga_integer(j->arguments, "--samples", 1, 1000000, &j->def.samples));
@@ -329,7 +331,7 @@ static void tell_report(const job* j, const ruga_bake_report* report) {
 
 static ruga_status bake_frames(job* j) {
     for (int frame = j->range.first; frame <= j->range.last; frame++) {
-        ruga_bake_report report;
+        ruga_bake_report report = {0};
         char* path = NULL;
         RUGA_TRY(bake_frame(j, frame, &j->atlas, j->pixel, &report));
         ruga_status status = write_map(j, frame, j->pixel, &path);
@@ -392,7 +394,7 @@ static ruga_status find_blend(job* j) {
     size_t texels = (size_t)j->small.width * (size_t)j->small.height;
     RUGA_TRY(RUGA_NEW_ZERO(j->sample, frames));
     for (int f = 0; f < frames; f++) {
-        ruga_bake_report report;
+        ruga_bake_report report = {0};
         RUGA_TRY(RUGA_NEW(j->sample[f], 3 * texels));
         RUGA_TRY(bake_frame(j, j->range.first + f, &j->small, j->sample[f], &report));
         to_sum(j, texels, j->sample[f]);
@@ -408,7 +410,7 @@ static ruga_status add_frames(job* j) {
         RUGA_TRY(RUGA_NEW_ZERO(j->map[k], 3 * texels));
     }
     for (int f = 0; f < j->blend.frames; f++) {
-        ruga_bake_report report;
+        ruga_bake_report report = {0};
         RUGA_TRY(bake_frame(j, j->range.first + f, &j->atlas, j->pixel, &report));
         to_sum(j, texels, j->pixel);
         for (int k = 0; k < j->maps; k++) {

@@ -32,7 +32,7 @@ typedef ruga_status ruga_command_function(const ruga_arguments* arguments, int* 
 
 typedef struct ruga_command {
     const char* name;
-    const char* operand; // "SCENE"; NULL = the command takes none
+    const char* operand; // "SCENE", or one of "a|b|c"; NULL = the command takes none
     const char* usage;   // the options as they are usually written
     const char* summary; // one line
     const char* about;

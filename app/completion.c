@@ -68,9 +68,6 @@ void ruga_want_of(const char* word, bool is_output, ruga_want* want) {
     } else if (is_choice(word)) {
         want->kind = RUGA_WANTED_WORDS;
         (void)snprintf(want->list, sizeof want->list, "%s", word);
-    } else if (strcmp(word, "SHAPE") == 0) {
-        want->kind = RUGA_WANTED_WORDS;
-        (void)snprintf(want->list, sizeof want->list, "%s", ruga_key_find("mesh.make", "shape")->choices);
     } else {
         want_files(word, want);
         if (want->kind == RUGA_WANTED_NOTHING && is_output) {

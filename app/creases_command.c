@@ -14,8 +14,10 @@
 #include <math.h>
 #include <string.h>
 
+static const char sources[] = "bending|stress";
+
 static const ruga_option options[] = {
-    {"--from", NULL, "WHAT", "bending: ridges of bending energy; stress: of compressive stress [bending]",
+    {"--from", NULL, sources, "bending: ridges of bending energy; stress: of compressive stress [bending]",
      false},
     {"--frame", "-f", "K", "the frame, counted from 0 [the last]", false},
     {"--min-length", NULL, "LENGTH", "leave out shorter curves, m [ten edges]", false},
@@ -25,14 +27,15 @@ static const ruga_option options[] = {
      "part of the largest [0.25]",
      false},
     {"--poisson", NULL, "NUMBER", "Poisson's ratio for stresses [0.3]", false},
-    {"--output", "-o", "FILE", "the file to write, .fold, or for flat meshes .svg with millimetres", false},
+    {"--output", "-o", "FILE",
+     "the file to write, .fold, or for flat meshes .svg, in the unit of the mesh file", false},
     {0},
 };
 
 static ruga_status read_def(const ruga_arguments* arguments, ruga_ridge_def* def) {
     int from = 0;
     *def = ruga_default_ridge_def();
-    RUGA_TRY(ruga_option_choice(arguments, "--from", "bending|stress", &from));
+    RUGA_TRY(ruga_option_choice(arguments, "--from", sources, &from));
     def->stress = from == 1;
     RUGA_TRY(ruga_quantity(arguments, "--min-length", "m", &def->min_length));
     RUGA_TRY(ruga_quantity(arguments, "--smooth", "m", &def->smooth));
@@ -77,8 +80,10 @@ static ruga_status check_output(const char* path, const ruga_mesh* mesh) {
     return ruga_check_output(path);
 }
 
-static ruga_status write_curves(const char* path, const ruga_mesh* mesh, const ruga_curves* curves,
-                                double time) {
+// In the unit of the mesh file, after unit and scale of its scene, so that a scene for the same file may name
+// the curves.
+static ruga_status write_curves(const char* path, const ruga_mesh* mesh, double unit,
+                                const ruga_curves* curves, double time) {
     ruga_crease_pattern pattern = {.folded = !is_pattern(mesh)};
     ruga_status status = RUGA_OK;
     RUGA_TRY_DONE(ruga_crease_pattern_add_curves(&pattern, curves));
@@ -86,12 +91,14 @@ static ruga_status write_curves(const char* path, const ruga_mesh* mesh, const r
         RUGA_TRY_DONE(ruga_crease_pattern_add_boundary(&pattern, mesh));
     }
     if (ends_with(path, ".svg")) {
-        static const double millimetre = 1e-3;
-        RUGA_TRY_DONE(ruga_svg_write(path, &pattern, millimetre));
-    } else {
-        const ruga_fold_frame frame = {(const double*)pattern.position, NULL, time};
-        RUGA_TRY_DONE(ruga_fold_write(path, &pattern, !pattern.folded, 1, &frame));
+        RUGA_TRY_DONE(ruga_svg_write(path, &pattern, unit));
+        goto done;
     }
+    for (int i = 0; i < 3 * pattern.vertex_count; i++) {
+        pattern.position[i / 3][i % 3] /= unit;
+    }
+    const ruga_fold_frame frame = {(const double*)pattern.position, NULL, time};
+    RUGA_TRY_DONE(ruga_fold_write(path, &pattern, unit == 1 ? "m" : "unit", !pattern.folded, 1, &frame));
 done:
     ruga_crease_pattern_clear(&pattern);
     return status;
@@ -125,6 +132,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     RUGA_TRY(ruga_required(arguments, "--output", &path));
     RUGA_TRY(ruga_open_result(ruga_operand(arguments), &reader));
     const ruga_mesh* mesh = ruga_result_mesh(reader);
+    double unit = ruga_result_reader_header(reader)->mesh_unit;
     RUGA_TRY_DONE(check_output(path, mesh));
     RUGA_TRY_DONE(ruga_choose_frames(arguments, ruga_result_frame_count(reader), false, &range));
     RUGA_TRY_DONE(RUGA_NEW(position, 3 * (size_t)mesh->vertex_count));
@@ -136,7 +144,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
                            ruga_operand(arguments), range.first);
         goto done;
     }
-    RUGA_TRY_DONE(write_curves(path, mesh, &curves, time));
+    RUGA_TRY_DONE(write_curves(path, mesh, unit > 0 ? unit : 1, &curves, time));
     say_curves(arguments, path, &curves);
 done:
     ruga_release(position);

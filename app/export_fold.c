@@ -108,7 +108,7 @@ ruga_status ruga_export_fold(const ruga_arguments* arguments, const char* path) 
     RUGA_TRY_DONE(ruga_choose_frames(arguments, ruga_result_frame_count(f.reader), true, &f.range));
     RUGA_TRY_DONE(make_pattern(&f));
     RUGA_TRY_DONE(read_frames(&f));
-    RUGA_TRY_DONE(ruga_fold_write(path, &f.pattern, false, f.frame_count, f.frame));
+    RUGA_TRY_DONE(ruga_fold_write(path, &f.pattern, "m", false, f.frame_count, f.frame));
     ruga_say(arguments, "%s\n", path);
 done:
     ruga_connectivity_clear(&f.edges);

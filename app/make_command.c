@@ -147,10 +147,15 @@ static ruga_status write_design(const ruga_arguments* arguments, int design) {
     for (int e = 0; e < pattern.edge_count; e++) {
         angle[e] = pattern.edge[e].angle;
     }
+    const int faces = pattern.face_count;
+    if (design ==
+        RUGA_DESIGN_ARCS) { // rings have holes, and faces of FOLD cannot: readers find them from the lines
+        pattern.face_count = pattern.corner_count = 0;
+    }
     const ruga_fold_frame frame = {(const double*)pattern.position, def.fold > 0 ? angle : NULL, 0};
-    RUGA_TRY_DONE(ruga_fold_write(path, &pattern, true, 1, &frame));
+    RUGA_TRY_DONE(ruga_fold_write(path, &pattern, "m", true, 1, &frame));
     ruga_say(arguments, "%s: %d vertices, %d lines, %d faces\n", path, pattern.vertex_count,
-             pattern.edge_count, pattern.face_count);
+             pattern.edge_count, faces);
 done:
     ruga_release(angle);
     ruga_crease_pattern_clear(&pattern);
@@ -187,7 +192,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
 
 const ruga_command ruga_make_command = {
     .name = "make",
-    .operand = "SHAPE",
+    .operand = shapes,
     .usage = "[--size X[,Y[,Z]]] [--edge L | --cells N,M] [--pattern NAME] [--angle A] [--fold A] -o FILE",
     .summary = "make a sheet, slab, bar, pillow, sphere or skirt as a mesh file, or a crease pattern",
     .about =

@@ -14,6 +14,8 @@
 
 enum { SERIES_MAX = 7, PAGE_COLUMNS = 2 };
 
+static const char axes[] = "none|x|y|xy";
+
 static const ruga_option options[] = {
     {"--what", NULL, "LIST",
      "plots with commas between them. Of a result: energy, residual, iterations, seconds,\n"
@@ -21,7 +23,7 @@ static const ruga_option options[] = {
      "columns, with + between those of one plot [each]",
      false},
     {"--x", NULL, "COLUMN", "of a CSV table: the column along the x axis [the first]", false},
-    {"--log", NULL, "AXES", "of a CSV table: logarithmic axes, x, y or xy", false},
+    {"--log", NULL, axes, "of a CSV table: logarithmic axes [none]", false},
     {"--output", "-o", "FILE", "the file to write, .svg or .png", false},
     {0},
 };
@@ -92,8 +94,9 @@ static ruga_status find_column(const ruga_csv* csv, const char* file, const char
     if (*column >= 0) {
         return RUGA_OK;
     }
-    for (int c = 0; c < csv->column_count && strlen(names) + strlen(csv->name[c]) + 2 < sizeof names; c++) {
-        (void)strcat(strcat(names, c > 0 ? "|" : ""), csv->name[c]);
+    for (int c = 0; c < csv->column_count; c++) {
+        size_t used = strlen(names);
+        (void)snprintf(names + used, sizeof names - used, "%s%s", c > 0 ? "|" : "", csv->name[c]);
     }
     (void)snprintf(word, sizeof word, "%.*s", (int)(length < 40 ? length : 40), name);
     (void)snprintf(sentence, sizeof sentence, "%.120s has no column %s", file, word);
@@ -192,7 +195,7 @@ static ruga_status plot_table(const ruga_arguments* arguments, const char* path)
     int logarithmic = 0;
     table t = {.file = ruga_operand(arguments)};
     ruga_status status = RUGA_OK;
-    RUGA_TRY(ruga_option_choice(arguments, "--log", "none|x|y|xy", &logarithmic));
+    RUGA_TRY(ruga_option_choice(arguments, "--log", axes, &logarithmic));
     RUGA_TRY(ruga_check_input(t.file));
     RUGA_TRY(ruga_csv_read(t.file, &t.csv));
     t.log_x = logarithmic & 1;

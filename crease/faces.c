@@ -386,7 +386,10 @@ ruga_status ruga_crease_pattern_mark_rims(ruga_crease_pattern* p, bool* complete
         p->edge[e].rim = sides == 1;
         bool may =
             p->edge[e].assignment == RUGA_ASSIGNMENT_BORDER || p->edge[e].assignment == RUGA_ASSIGNMENT_CUT;
-        open = sides == 1 && !may ? p->edge[e].vertex[0] : open;
+        // One with no face beside it: the border of a hole, which a face cannot have.
+        open = (sides == 1 && !may) || (sides == 0 && p->edge[e].assignment == RUGA_ASSIGNMENT_BORDER)
+                   ? p->edge[e].vertex[0]
+                   : open;
     }
     if (added > 0) {
         RUGA_TRY_DONE(ruga_crease_pattern_note(p, "%d sides of faces without a line got one", added));
@@ -394,7 +397,7 @@ ruga_status ruga_crease_pattern_mark_rims(ruga_crease_pattern* p, bool* complete
     *complete = open < 0;
     if (open >= 0) {
         RUGA_TRY_DONE(ruga_crease_pattern_note(
-            p, "a crease near (%.6g, %.6g) has a face on one side only: faces were found anew from the lines",
+            p, "faces_vertices disagrees with the line at (%.6g, %.6g): faces were found anew from the lines",
             p->position[open][0], p->position[open][1]));
     }
 done:

@@ -11,7 +11,8 @@
 // sheet cut a hole out of it. What cannot be as it is drawn is noted. RUGA_BAD_INPUT where no face is left.
 ruga_status ruga_crease_pattern_find_faces(ruga_crease_pattern* pattern);
 // SETs `rim` from the faces at hand; lines that sides of faces lack are added, and noted. *complete is false,
-// which is noted, where a line that is neither border nor cut has a face on one side only: one is missing.
+// which is noted, where a line that is neither border nor cut has a face on one side only, so that one is
+// missing, or a border has none.
 ruga_status ruga_crease_pattern_mark_rims(ruga_crease_pattern* pattern, bool* complete);
 
 #endif

@@ -529,7 +529,7 @@ static void write_topology(ruga_writer* w, const ruga_crease_pattern* p) {
     for (int e = 0; e < p->edge_count; e++) {
         (void)fprintf(w->file, "%s\"%c\"", e ? ", " : "", ruga_assignment_letter(p->edge[e].assignment));
     }
-    (void)fputs("],\n\"faces_vertices\": [", w->file);
+    (void)fputs(p->face_count > 0 ? "],\n\"faces_vertices\": [" : "", w->file);
     for (int f = 0; f < p->face_count; f++) {
         (void)fputs(f ? ", [" : "[", w->file);
         for (int k = p->face_start[f]; k < p->face_start[f + 1]; k++) {
@@ -540,16 +540,16 @@ static void write_topology(ruga_writer* w, const ruga_crease_pattern* p) {
     (void)fputs("]", w->file);
 }
 
-ruga_status ruga_fold_write(const char* path, const ruga_crease_pattern* pattern, bool flat, int frame_count,
-                            const ruga_fold_frame* frame) {
+ruga_status ruga_fold_write(const char* path, const ruga_crease_pattern* pattern, const char* unit, bool flat,
+                            int frame_count, const ruga_fold_frame* frame) {
     RUGA_ASSERT(frame_count > 0);
     ruga_writer w;
     RUGA_TRY(ruga_writer_open(path, &w));
     (void)fprintf(w.file,
                   "{\"file_spec\": 1.2,\n\"file_creator\": \"ruga %s\",\n\"file_classes\": [\"%s\"],\n"
-                  "\"frame_classes\": [\"%s\"],\n\"frame_attributes\": [\"%s\"],\n\"frame_unit\": \"m\",\n",
+                  "\"frame_classes\": [\"%s\"],\n\"frame_attributes\": [\"%s\"],\n\"frame_unit\": \"%s\",\n",
                   RUGA_VERSION, frame_count > 1 ? "animation" : "singleModel",
-                  flat ? "creasePattern" : "foldedForm", flat ? "2D" : "3D");
+                  flat ? "creasePattern" : "foldedForm", flat ? "2D" : "3D", unit);
     for (int k = 0; k < frame_count; k++) {
         if (k > 0) {
             (void)fprintf(

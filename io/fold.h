@@ -33,9 +33,9 @@ typedef struct ruga_fold_frame {
     double time;            // s; goes into frame_title
 } ruga_fold_frame;
 // The first frame is the file's own (creasePattern where `flat`), all others are foldedForm and inherit from
-// it.
-ruga_status ruga_fold_write(const char* path, const ruga_crease_pattern* pattern, bool flat, int frame_count,
-                            const ruga_fold_frame* frame);
+// it. `unit`: the file's frame_unit, which the positions are in.
+ruga_status ruga_fold_write(const char* path, const ruga_crease_pattern* pattern, const char* unit, bool flat,
+                            int frame_count, const ruga_fold_frame* frame);
 
 // A drawing of a flat pattern in the colours that ruga_svg_read knows, one unit of it `unit` m: each chain of
 // lines is a path, so that a drawing program takes it as one.

@@ -423,7 +423,9 @@ static ruga_status write_file(job* j, const char* path, const char* head) {
     (void)fwrite("   ", 1, padded - words, writer.file);
     ruga_animation_put_u32(&writer, (uint32_t)j->length, false);
     (void)fwrite("BIN", 1, 4, writer.file);
-    return ruga_writer_close(&writer, put_data(j));
+    ruga_status status = put_data(j);
+    j->writer = NULL;
+    return ruga_writer_close(&writer, status);
 }
 
 static ruga_status write_animation(job* j, const char* path) {

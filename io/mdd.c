@@ -32,7 +32,7 @@ ruga_status ruga_mdd_open(ruga_point_cache* cache) {
     RUGA_TRY(ruga_point_cache_bytes(cache, 0, sizeof head, head));
     cache->big = true;
     uint32_t samples = ruga_bytes_u32(head, true);
-    cache->data = (long long)(sizeof head + sizeof time * (size_t)samples);
+    cache->data = 8 + 4 * (long long)samples;
     RUGA_TRY(ruga_point_cache_size(cache, ruga_bytes_u32(head + 4, true), samples));
     for (int k = 0; k < cache->sample_count; k++) {
         RUGA_TRY(ruga_point_cache_bytes(cache, (long long)sizeof head + 4 * (long long)k, sizeof time, time));

@@ -7,6 +7,7 @@
 #include "core/vec3.h"
 #include "crease/flat.h"
 #include "io/fold.h"
+#include "io/result.h"
 #include "io/scene_read.h"
 
 #include <math.h>
@@ -73,7 +74,7 @@ static ruga_crease_def common(const ruga_scene_crease* crease, const ruga_skin_d
 }
 
 static ruga_status add_lines(loader* l, const ruga_scene_crease* crease, const char* file,
-                             const ruga_crease_pattern* pattern, const ruga_curves* curves) {
+                             const ruga_crease_pattern* pattern, const ruga_curves* curves, double unit) {
     for (int c = 0; c < curves->count; c++) {
         const ruga_curve* curve = &curves->curve[c];
         const ruga_crease_pattern_edge* edge = &pattern->edge[curve->label];
@@ -82,7 +83,7 @@ static ruga_status add_lines(loader* l, const ruga_scene_crease* crease, const c
         char name[320];
         RUGA_TRY(RUGA_POOL_TAKE(l->pool, points, 3 * (size_t)curve->point_count));
         for (int i = 0; i < 3 * curve->point_count; i++) {
-            points[i] = l->scene->mesh_unit * curve->point[i / 3][i % 3];
+            points[i] = unit * curve->point[i / 3][i % 3];
         }
         def.points = points;
         def.point_count = curve->point_count;
@@ -138,7 +139,60 @@ static ruga_status add_pattern(loader* l, const ruga_scene_crease* crease, const
         status = ruga_fail(RUGA_BAD_INPUT, "%s has no creases", file);
         goto done;
     }
-    RUGA_TRY_DONE(add_lines(l, crease, file, &pattern, &curves));
+    RUGA_TRY_DONE(add_lines(l, crease, file, &pattern, &curves, l->scene->mesh_unit));
+done:
+    ruga_curves_clear(&curves);
+    ruga_crease_pattern_clear(&pattern);
+    return status;
+}
+
+// A frame of a result, its surface at rest and as it is.
+static ruga_status find_ridges(const char* path, const ruga_scene_crease* crease, double poisson,
+                               ruga_curves* curves) {
+    ruga_result_reader* reader = NULL;
+    double* position = NULL;
+    ruga_ridge_def def = crease->ridge;
+    ruga_status status = ruga_result_open(path, &reader);
+    if (status == RUGA_IO) {
+        status = ruga_fail(RUGA_BAD_INPUT, "%s", ruga_last_error());
+    }
+    RUGA_TRY_DONE(status);
+    int frames = ruga_result_frame_count(reader),
+        frame = crease->result_frame < 0 ? frames - 1 : crease->result_frame;
+    if (frame < 0 || frame >= frames) {
+        status = ruga_fail(RUGA_BAD_INPUT, "%s has no frame %d: there are %d", path, frame, frames);
+        goto done;
+    }
+    const ruga_mesh* mesh = ruga_result_mesh(reader);
+    def.stress = crease->from == 1;
+    def.poisson = poisson;
+    RUGA_TRY_DONE(RUGA_NEW(position, 3 * (size_t)mesh->vertex_count));
+    RUGA_TRY_DONE(ruga_result_read_frame(reader, frame, NULL, position, NULL, NULL));
+    RUGA_TRY_DONE(ruga_ridges_find(mesh, position, &def, curves));
+    if (curves->count == 0) {
+        status = ruga_fail(RUGA_BAD_INPUT, "frame %d of %s has no ridge as long and as strong as asked for",
+                           frame, path);
+    }
+done:
+    ruga_release(position);
+    ruga_result_reader_close(&reader);
+    return status;
+}
+
+static ruga_status add_ridges(loader* l, const ruga_scene_crease* crease, const char* directory) {
+    ruga_status status = RUGA_OK;
+    ruga_crease_pattern pattern = {0};
+    ruga_curves curves = {0};
+    char* path;
+    RUGA_TRY_DONE(ruga_scene_path(directory, crease->result, l->pool, &path));
+    RUGA_TRY_DONE(find_ridges(path, crease, l->scene->def.skin.poisson, &curves));
+    RUGA_TRY_DONE(ruga_crease_pattern_add_curves(&pattern, &curves));
+    for (int c = 0, edge = 0; c < curves.count; c++) { // a label is a line of the pattern from here on
+        ruga_curve* curve = &curves.curve[c];
+        curve->label = edge;
+        edge += curve->closed ? curve->point_count : curve->point_count - 1;
+    }
+    RUGA_TRY_DONE(add_lines(l, crease, crease->result, &pattern, &curves, 1));
 done:
     ruga_curves_clear(&curves);
     ruga_crease_pattern_clear(&pattern);
@@ -190,7 +244,8 @@ ruga_status ruga_scene_load_creases(const ruga_yaml_node* root, const char* dire
         (void)snprintf(shown, sizeof shown, "creases.%d.curve", i);
         RUGA_TRY_DONE(crease->fold || crease->svg
                           ? ruga_yaml_fail_at(add_pattern(&l, crease, directory), curve, shown)
-                          : add_drawn(&l, curve, shown, crease, i));
+                      : crease->result ? ruga_yaml_fail_at(add_ridges(&l, crease, directory), curve, shown)
+                                       : add_drawn(&l, curve, shown, crease, i));
     }
     RUGA_TRY_DONE(l.count > 0 ? keep(&l) : RUGA_OK);
 done:

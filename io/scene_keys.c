@@ -277,6 +277,14 @@ static const struct {
                    "  - time: 0.5 s\n"
                    "    stretch: [0.95, 1, 1]\n"
                    "    bump: {center: [0, 0, 10 cm], radius: 5 cm, depth: 1 cm}\n"},
+    {"follow",
+     "mesh:   {file: cube.obj, unit: cm}\n"
+     "follow: {file: cube_%d.obj, rate: 25 1/s}   # cube_0.obj, cube_1.obj and so on: how the body moves\n"},
+    {"start", "mesh:     {make: {shape: sheet, size: [20 cm, 12 cm], edge: 5 mm}}\n"
+              "skin:     {motion: dynamic}\n"
+              "interior: none\n"
+              "creases:  [{curve: {polyline: [[0, -6 cm, 0], [0, 6 cm, 0]]}, hinge: {rest: 90 deg}}]\n"
+              "start:    {fold: 0.5, velocity: [0, 0, -2]}   # half folded, and falling\n"},
     {"time", "time: {step: 20 ms, frames: 50}\n"},
     {"start", "mesh: {make: {shape: sheet, size: [20 cm, 12 cm], edge: 5 mm}}\n"
               "skin: {motion: dynamic}\n"

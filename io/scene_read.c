@@ -592,7 +592,7 @@ static ruga_status take_entries(reader* r, const place* p, int count, char** fir
         ruga_scene_crease* crease;
         RUGA_TRY(RUGA_POOL_TAKE(pool, crease, count));
         for (int i = 0; i < count; i++) {
-            crease[i] = (ruga_scene_crease){.yield = INFINITY, .rate = INFINITY};
+            crease[i] = (ruga_scene_crease){.result_frame = -1, .yield = INFINITY, .rate = INFINITY};
         }
         r->parts->crease = crease;
         r->parts->crease_count = count;

@@ -228,11 +228,14 @@ static ruga_status check_values(const ruga_yaml_node* hinge, const char* shown, 
     }
     return points > 0 ? ruga_yaml_fail(node, shown, "%s has %d values, but the curve has %d points", key,
                                        values->count, points)
-                      : ruga_yaml_fail(node, shown, "%s takes one value here; one for each point goes with polyline, "
-                                                    "uv or vertices", key);
+                      : ruga_yaml_fail(node, shown,
+                                       "%s takes one value here; one for each point goes with polyline, "
+                                       "uv or vertices",
+                                       key);
 }
 
-static ruga_status check_keys_of_hinge(const ruga_yaml_node* hinge, const char* shown, const ruga_scene_crease* crease) {
+static ruga_status check_keys_of_hinge(const ruga_yaml_node* hinge, const char* shown,
+                                       const ruga_scene_crease* crease) {
     static const char* const values[] = {"angle", "scale", NULL};
     const ruga_yaml_node* list = ruga_yaml_find(hinge, "animate");
     const ruga_yaml_node* node = list ? list->first : NULL;
@@ -249,15 +252,16 @@ static ruga_status check_keys_of_hinge(const ruga_yaml_node* hinge, const char* 
     return RUGA_OK;
 }
 
-static ruga_status check_crease(const ruga_yaml_node* node, const char* shown, const ruga_scene_crease* crease) {
-    static const char* const kinds[] = {"fold", "svg", "polyline", "uv", "vertices", "group", NULL};
+static ruga_status check_crease(const ruga_yaml_node* node, const char* shown,
+                                const ruga_scene_crease* crease) {
+    static const char* const kinds[] = {"fold", "svg", "polyline", "uv", "vertices", "group", "stress", NULL};
     const ruga_yaml_node *curve = ruga_yaml_find(node, "curve"), *hinge = ruga_yaml_find(node, "hinge");
     char path[48];
     int which;
     (void)snprintf(path, sizeof path, "%.30s.curve", shown);
     RUGA_TRY(exactly_one(curve, path, kinds, &which));
     bool drawn = which == 2 || which == 3;
-    int points = which == 2 ? crease->polyline.count
+    int points = which == 2   ? crease->polyline.count
                  : which == 3 ? crease->uv.count
                  : which == 4 ? crease->path.vertex_count
                               : 0;
@@ -274,8 +278,9 @@ static ruga_status check_crease(const ruga_yaml_node* node, const char* shown, c
     if (ruga_yaml_find(hinge, "stiffness") && ruga_yaml_find(hinge, "length")) {
         return ruga_yaml_fail(hinge, path, "stiffness and length are both given; keep one of them");
     }
-    if (crease->rest.word && which > 1) {
-        return ruga_yaml_fail(ruga_yaml_find(hinge, "rest"), path, "assigned angles belong to fold and svg");
+    if (crease->rest.word && which > 1 && which != 6) {
+        return ruga_yaml_fail(ruga_yaml_find(hinge, "rest"), path,
+                              "assigned angles belong to fold, svg and stress");
     }
     RUGA_TRY(check_values(hinge, path, "stiffness", &crease->stiffness, points));
     RUGA_TRY(check_values(hinge, path, "rest", &crease->rest, points));

@@ -11,6 +11,7 @@
 #define REQUIRED RUGA_KEY_REQUIRED
 #define ANY         {-INFINITY, INFINITY, true, true}
 #define POSITIVE    {0, INFINITY, true, true}
+#define PART        {0, 1, true, false}
 #define NOT_NEGATIVE {0, INFINITY, false, true}
 #define POISSON     {-1, 0.5, true, true}
 #define IN(type, field) (int)offsetof(type, field)
@@ -283,7 +284,7 @@ const ruga_key ruga_keys[] = {
 
     ENTRIES("creases", "(none)", "Curves about which the skin folds, or along which it is cut; docs/creases.md."),
     SECTION("creases.N.curve", REQUIRED,
-            "Where: one of fold, svg, polyline, uv, vertices, group. Points in metres in the mesh's frame after `unit` "
+            "Where: one of fold, svg, polyline, uv, vertices, group, stress. Points in metres in the mesh's frame after `unit` "
             "and `scale`, which also apply to fold and svg; what hangs over the border is trimmed."),
     OTHER("creases.N.curve.fold", RUGA_KEY_TEXT, CREASE(fold), "", NULL,
           "All creases of a FOLD file, relative to the scene file's folder; its cuts (C) are cut."),
@@ -296,7 +297,19 @@ const ruga_key ruga_keys[] = {
     OTHER("creases.N.curve.vertices", RUGA_KEY_VERTICES, CREASE(path), "", NULL,
           "A path along edges: vertices by their number in the file, from 0; for a made shape, of the mesh itself."),
     OTHER("creases.N.curve.group", RUGA_KEY_TEXT, CREASE(group), "", NULL, "The border of a group of the mesh."),
-    OTHER("creases.N.curve.stress", RUGA_KEY_LATER, -1, "", NULL, "Along ridges of stress."),
+    SECTION("creases.N.curve.stress", NULL,
+            "Along the ridges of a result, as `ruga creases` finds them; its surface at rest is to be this one."),
+    OTHER("creases.N.curve.stress.result", RUGA_KEY_TEXT, CREASE(result), "", REQUIRED,
+          "The result file, relative to the scene file's folder."),
+    CHOICE("creases.N.curve.stress.from", CREASE(from), "stress", "bending|stress",
+           "stress: ridges of the compressive stress. bending: of the bending energy."),
+    INTEGERS("creases.N.curve.stress.frame", 1, CREASE(result_frame), "(the last)", 0, 1000000, "Its frame."),
+    NUMBER("creases.N.curve.stress.min_length", CREASE(ridge.min_length), "m", "0 m", NOT_NEGATIVE,
+           "Shorter curves are left out; 0 = ten edges."),
+    NUMBER("creases.N.curve.stress.smooth", CREASE(ridge.smooth), "m", "0 m", NOT_NEGATIVE,
+           "Width over which fields and curves are smoothed; 0 = three edges."),
+    NUMBER("creases.N.curve.stress.strength", CREASE(ridge.strength), "1", "0.25", PART,
+           "Least energy density or stress of a curve at its strongest place, as a part of the largest."),
     FLAG("creases.N.curve.closed", CREASE(closed), "false",
          "Whether the last point of polyline or uv is joined to the first."),
     FLAG("creases.N.cut", CREASE(cut), "false", "Whether the curve is cut and stays open, without a hinge."),

@@ -6,6 +6,7 @@
 #ifndef RUGA_IO_SCENE_SCHEMA_H
 #define RUGA_IO_SCENE_SCHEMA_H
 
+#include "crease/ridge.h"
 #include "io/pool.h"
 #include "mesh/make.h"
 #include "ruga/types.h"
@@ -84,8 +85,10 @@ typedef struct ruga_scene_points {
 
 // An entry of creases: before its curve is known, which may be many.
 typedef struct ruga_scene_crease {
-    char *fold, *svg, *group;
+    char *fold, *svg, *group, *result; // result: that ridges are found in
     int frame;
+    int result_frame, from; // -1 = the last; 0 = bending, 1 = stress
+    ruga_ridge_def ridge;
     ruga_scene_points polyline, uv;
     ruga_region path; // its vertices
     bool closed, cut;

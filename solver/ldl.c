@@ -29,7 +29,6 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
         ruga_release(f->memory[t].index);
         ruga_release(f->memory[t].stack);
         ruga_release(f->memory[t].work);
-        ruga_release(f->memory[t].single);
     }
     ruga_release(f->memory);
     ruga_ldl_symbolic_clear(&f->symbolic);
@@ -142,7 +141,7 @@ size_t ruga_ldl_bytes(const ruga_ldl* f) {
     for (int t = 0; t <= f->symbolic.task_count; t++) {
         const task_memory* m = &f->memory[t];
         bytes += (m->factor_capacity + m->stack_capacity + m->work_capacity) * sizeof(double) +
-                 m->index_capacity * sizeof(int) + m->single_capacity * sizeof(float);
+                 m->index_capacity * sizeof(int);
     }
     return bytes;
 }

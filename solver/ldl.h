@@ -88,8 +88,7 @@ typedef struct task_memory {
     size_t stack_used, stack_peak, stack_capacity;
     double* work; // pivots and peaks of one front, tile of L D
     size_t work_capacity;
-    float* single; // the panels again, at the same places
-    size_t single_capacity;
+    float* single; // the panels again, at the same places: in the stack, which is idle during solves
     int positive, negative, zero;
     double entries, flops;
     ruga_status status;

@@ -389,7 +389,9 @@ static void copy_task(int begin, int end, int chunk, void* context) {
 static ruga_status copy_to_single(ruga_ldl* f) {
     for (int t = 0; t <= f->symbolic.task_count; t++) {
         task_memory* m = &f->memory[t];
-        RUGA_TRY(ruga_ldl_make_room((void**)&m->single, &m->single_capacity, m->factor_used, sizeof(float)));
+        RUGA_TRY(ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, (m->factor_used + 1) / 2,
+                                    sizeof(double)));
+        m->single = (float*)m->stack;
     }
     ruga_parallel_for(f->symbolic.task_count + 1, 1, copy_task, f);
     f->single_ready = true;

@@ -1,54 +1,48 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// The published solve made robust: Newton on the KKT system from a feasible start, with the exact Hessian where its
-// inertia is that of a minimum and a diagonal shift where it is not, Armijo's rule on the energy, and a step of
-// negative curvature at saddles. The linear system is solved directly, or by Belos MINRES with the preconditioner
-// L |D| L^T of a factor that is kept across iterations and frames while it serves (Gill, Murray, Ponceleon,
-// Saunders 1992: with the factor of the matrix itself two iterations are enough).
+// The published solve made robust: Newton on the KKT system from a feasible start, with the exact Hessian
+// where its inertia is that of a minimum and a diagonal shift where it is not, Armijo's rule on the energy,
+// and a step of negative curvature at saddles. The linear system is solved directly, or on the null space of
+// H by Belos MINRES, its preconditioner a factor of [K H^T; H 0] that is kept across iterations and frames
+// while it serves: a constraint preconditioner (Gould, Hribar, Nocedal 2001), positive definite there, as its
+// inertia is that of a minimum. With the factor of the matrix itself one iteration is enough.
 #include "solver/belos_shim.h"
 #include "solver/skin.h"
 
 #include <math.h>
-#include <string.h>
 
-enum { MAX_ITERATIONS = 400, MINRES_MAX = 300, MINRES_STALE = 40 };
-enum { GRADIENT, PROJECTED, DIRECTION, SIDE, SOLUTION }; // work vectors
+enum { MAX_ITERATIONS = 400, MINRES_MAX = 60 };
+enum { GRADIENT, PROJECTED, DIRECTION, SIDE }; // work vectors
 
-// y = [K H^T; H 0] x with the stiffness last assembled.
-static ruga_status apply_system(const double* x, double* y, void* context) {
-    const ruga_skin* skin = context;
-    ruga_sparse_multiply_symmetric(&skin->kkt, x, y);
-    return RUGA_OK;
+// y = P K x with the stiffness last assembled, P the projection on H x = 0.
+static ruga_status apply_reduced(const double* x, double* y, void* context) {
+    ruga_skin* skin = context;
+    ruga_skin_multiply(skin, x, y);
+    return ruga_skin_project(skin, y, y);
 }
 
 static ruga_status apply_preconditioner(const double* x, double* y, void* context) {
-    ruga_skin* skin = context;
-    return ruga_factor_solve_absolute(skin->factor, x, y);
+    return ruga_skin_solve_rough(context, x, y);
 }
 
 // Newton direction by MINRES; *good = false where the factor no longer serves or the direction does not descend.
 static ruga_status direction_minres(ruga_skin* skin, const double* x, const double* projected, double* d,
                                     bool* good) {
-    double *side = ruga_skin_vector(skin, SIDE), *solution = ruga_skin_vector(skin, SOLUTION);
+    double* side = ruga_skin_vector(skin, SIDE);
     *good = false;
     if (!skin->factor_right) {
         return RUGA_OK;
     }
     RUGA_TRY(ruga_skin_assemble(skin, x, 0));
-    memset(side, 0, (size_t)skin->size * sizeof *side);
-    memset(solution, 0, (size_t)skin->size * sizeof *solution);
     for (int i = 0; i < skin->n; i++) {
         side[i] = -projected[i];
+        d[i] = 0;
     }
     ruga_minres_report report;
-    RUGA_TRY(ruga_belos_minres(skin->size, apply_system, apply_preconditioner, skin, side, solution, 1e-4,
-                               MINRES_MAX, &report));
-    skin->work.linear_iterations += report.iterations;
-    // MINRES meets H d = 0 to its tolerance only, and the gradient has a large part in the range of H^T.
-    RUGA_TRY(ruga_skin_project(skin, solution, d));
-    *good = report.converged && report.iterations <= MINRES_STALE &&
-            ruga_dot_product(skin->n, projected, d) < 0;
+    RUGA_TRY(ruga_belos_minres(skin->n, apply_reduced, apply_preconditioner, skin, side, d, 1e-4, MINRES_MAX,
+                               &report));
+    *good = report.converged && ruga_dot_product(skin->n, projected, d) < 0;
     return RUGA_OK;
 }
 

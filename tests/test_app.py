@@ -6,6 +6,7 @@
 import csv
 import glob
 import json
+import math
 import os
 import random
 import re
@@ -45,6 +46,23 @@ gravity:  [0, 0, -9.81]
 handles:
   - {region: {plane: {center: [-6 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}
   - {region: {plane: {center: [6 cm, 0, 0], normal: [1, 0, 0]}}, move: {translate: [-6 mm, 0, 0]}, during: [0 s, 80 ms]}
+"""
+
+
+# A square of paper with two creases that cross, folded from flat by the pattern's angles.
+FOLDED = """\
+mesh:     {file: cross.fold, scale: 0.1, remesh: {edge: 12 mm}}
+skin:     {thickness: 0.3 mm, young: 1 GPa}
+interior: none
+creases:
+  - curve: {fold: cross.fold}
+    hinge: {stiffness: 0.02 N, rest: assigned, yield: 60 deg, animate: [{time: 0 s, scale: 0}, {time: 0.2 s, scale: 0.9}]}
+time:     {step: 20 ms, frames: 10}
+"""
+CROSS = """\
+{"vertices_coords": [[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]],
+ "edges_vertices": [[0, 4], [4, 1], [1, 5], [5, 2], [2, 6], [6, 3], [3, 7], [7, 0], [4, 8], [5, 8], [6, 8], [7, 8]],
+ "edges_assignment": ["B", "B", "B", "B", "B", "B", "B", "B", "M", "V", "V", "V"]}
 """
 
 
@@ -177,6 +195,13 @@ class Meshes(Case):
         self.refused("make", "sheet", "--size", "1,1", "--edge", "1 um", "-o", "a.obj", saying="vertices")
         self.refused("make", "sheet", "-o", "a.stl", saying="obj")
         self.refused("make", "sheet", "-o", "none/a.obj", saying="folder")
+        self.refused("make", "miura", "-o", "a.obj", saying="written as .fold")
+        self.refused("make", "miura", "--edge", "1mm", "-o", "a.fold", saying="is a crease pattern")
+        self.refused("make", "sheet", "--fold", "10 deg", "-o", "a.obj", saying="is a mesh")
+        self.refused("make", "pleats", "--cells", "50,1", "-o", "a.fold", saying="do not fit")
+        self.refused("make", "arcs", "--size", "2,1", "-o", "a.fold", saying="outer radius")
+        self.refused("creases", "scene.yaml", "-o", "a.fold", saying="scene.yaml")
+        self.refused("creases", "scene.yaml", "--strength", "2", "-o", "a.fold", saying="not between")
         os.mkdir(self.path("folder.obj"))
         self.refused("make", "sheet", "-o", "folder.obj", saying="is a folder")
         self.assertEqual(sorted(os.listdir(self.folder)), ["folder.obj", "scene.yaml"])
@@ -305,7 +330,11 @@ class Runs(Case):
         self.refused("export", "a.h5", "--format", "obj", "--frames", "0:3", "-o", "one.obj", saying="%04d")
         self.refused("export", "a.h5", "--format", "obj", "--frames", "3:11", "-o", "a%d.obj", saying="0:10")
         self.refused("export", "a.h5", "--format", "obj", "--frames", "4:3", "-o", "a%d.obj", saying="range")
-        self.refused("export", "a.h5", "--format", "fold", "-o", "a.fold", saying="not available")
+        self.ruga("export", "a.h5", "-o", "plain.fold")  # without creases: all lines are flat
+        self.refused("export", "a.h5", "--unit", "mm", "-o", "b.fold", saying="in metres")
+        self.refused("creases", "a.h5", "--min-length", "3 m", "-o", "c.fold", saying="no ridge")
+        self.refused("creases", "a.h5", "-o", "c.obj", saying=".fold or .svg")
+        self.refused("measure", "a.h5", "--curve", "none/c.csv", saying="folder")
         self.refused("export", "a.h5", "--unit", "kg", "-o", "a.obj", saying="--unit")
 
     def test_existing_results_and_resume(self):
@@ -371,6 +400,36 @@ class Runs(Case):
         scene = self.write("coupled.yaml", COUPLED)
         self.ruga("run", scene, "-o", "coupled.h5")
         self.kill_and_resume(scene, 10, self.path("coupled.h5"))
+
+    def test_creases_from_a_pattern(self):
+        self.write("cross.fold", CROSS)
+        scene = self.write("folded.yaml", FOLDED)
+        facts = self.json("explain", scene)
+        self.assertEqual(facts["creases"]["curves"], 4)
+        self.assertGreater(facts["creases"]["pieces"], facts["creases"]["triangles"])
+        self.assertIn("freedom full: it meets another", self.ruga("explain", scene).stdout)
+        self.ruga("run", scene, "-o", "folded.h5")
+        self.assertEqual(self.json("measure", "folded.h5")["outcome"], "minimum")
+        self.ruga("export", "folded.h5", "--format", "obj", "-o", "folded.obj")
+        shown = self.json("check", "folded.obj", "--as", "shell")
+        self.assertEqual((shown["vertices"], shown["triangles"]), (facts["vertices"], facts["triangles"]))
+        self.kill_and_resume(scene, 6, self.path("folded.h5"))
+        if h5py:
+            with h5py.File(self.path("folded.h5"), "r") as file:
+                creases = file["creases"]
+                self.assertEqual(creases["names"].asstr()[0], "cross.fold edge 8")
+                self.assertEqual(sorted(set(bytes(creases["assignment"][()]).decode())), ["M", "V"])
+                self.assertAlmostEqual(sum(creases["length"][()]), 0.2, delta=1e-12)
+                self.assertLess(max(creases["gap"][()]), 1e-14)
+                signs = [1 if letter == ord("V") else -1 for letter in creases["assignment"][()]]
+                for sign, angle in zip(signs, creases["angle"][10]):
+                    self.assertGreater(sign * angle, 0.9 * 162 * math.pi / 180)
+                rest = file["mesh/rest"][()]
+                for (a, b), length in zip(creases["segments"][()], creases["length"][()]):
+                    self.assertAlmostEqual(math.dist(rest[a], rest[b]), length, delta=1e-15)
+        self.ruga("run", scene, "-o", "other.h5", "--frames", 2, "--threads", 1)
+        self.refused("run", scene, "-o", "other.h5", "--resume", "--set", "creases.0.hinge.scale=0.5", saying="scene")
+        self.refused("run", scene, "-o", "none.h5", "--set", "skin.motion=dynamic", saying="not available yet")
 
     def test_same_bits_for_any_number_of_threads(self):
         first = self.run_scene("0.h5", "--threads", 1, "--frames", 6)

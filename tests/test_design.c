@@ -169,7 +169,7 @@ static void curves_can_be_written_edited_and_read_back(void** state) {
     for (int drawing = 0; drawing < 2; drawing++) {
         const ruga_fold_frame frame = {(const double*)p.position, NULL, 0};
         assert_ok(drawing ? ruga_svg_write("test_design.svg", &p, 1e-3)
-                          : ruga_fold_write("test_design.fold", &p, true, 1, &frame));
+                          : ruga_fold_write("test_design.fold", &p, "m", true, 1, &frame));
         assert_ok(drawing ? ruga_svg_read("test_design.svg", 1e-3, 1e-3, &q)
                           : ruga_fold_read("test_design.fold", 0, 1, &q));
         assert_meshed_area(&q, 0.5);

@@ -155,7 +155,7 @@ class Completion:
             for letter, option, takes in options(about):
                 if "|" in takes and takes == takes.lower():
                     self.assertEqual(self.complete(f"ruga {name} {option} "), set(takes.split("|")), name)
-        self.assertEqual(self.complete("ruga make p"), {"pillow"})
+        self.assertEqual(self.complete("ruga make pi"), {"pillow"})
 
     def test_files(self):
         self.assertEqual(self.complete("ruga run "), {"a.yaml", "folder", "share"})

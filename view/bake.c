@@ -124,8 +124,9 @@ static double see_sky(const job* j, const place* at, uint64_t seed) {
                          j->def->detail + 3 * (size_t)vertex[2], facet);
     for (int k = 0; k < j->def->samples; k++) {
         double radical = 0, half = 0.5;
-        for (int bits = k; bits > 0; bits >>= 1, half /= 2) {
+        for (int bits = k; bits > 0; bits >>= 1) {
             radical += half * (bits & 1);
+            half /= 2;
         }
         double across = fmod((k + 0.5) / j->def->samples + shift[0], 1),
                turn = 2 * RUGA_PI * fmod(radical + shift[1], 1);

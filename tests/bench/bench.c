@@ -4,13 +4,17 @@
 // Cost of a frame of the static solve on the 50 cm pillow (h = 0.7 mm, E ratio 1e4, E_q = 50 kPa): from flat
 // to 1 % compression in 5 frames, then measured frames of 0.2 % more and a 1 mm deeper bump, 20 ms each. The
 // unit is one numeric factorisation of the frame's matrix, timed in the same run right after the frame.
-// `quasi-newton`, and `damped` (the same with motion: damped), each go their own way; the other methods start
-// each frame from the states of quasi-newton. Those that use MINRES take minutes and run --slow-frames only.
-// Where the published method stops short of the tolerance, the time at which another first passes its final
-// residual is printed as `to mark`.
+// `quasi-newton`, and `damped` (the same with motion: damped), each go their own way, with each number of
+// threads; the other methods start each frame from the states of quasi-newton. Those that use MINRES take
+// minutes and run --slow-frames only. Where the published method stops short of the tolerance, the time at
+// which another first passes its final residual is printed as `to mark`.
 //     bench [--frames N] [--slow-frames N] [--methods A,B] [--threads N,M] [--per-frame] [--json FILE]
-//           [--residuals FILE.csv] [--relaxation SECONDS] [UNKNOWNS[:CLUSTERS] ...]
-// --residuals writes residual, energy and work spent at each iteration.
+//           [--plot DIR] [--residuals FILE.csv] [--relaxation SECONDS] UNKNOWNS[:CLUSTERS] ...
+// Large cases have fewer frames unless told, and what takes many minutes is left out: the published method
+// above 30,000 unknowns, Newton with MINRES above 13,000; Newton with factorisations runs where it is named
+// only.
+// --plot draws residual against iteration of each method's worst frame; --residuals writes residual, energy
+// and work spent at each iteration.
 #include "core/memory.h"
 #include "core/progress.h"
 #include "core/vec3.h"
@@ -18,13 +22,16 @@
 #include "solver/model.h"
 #include "solver/state.h"
 #include "tests/bench/pillow.h"
+#include "view/plot.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { WARM = 5, MAX_FRAMES = 20, METHODS = 5, MAX_CASES = 16, TRACE = 100000, TIMINGS = 3 };
+enum { LAG_MAX = 30000 }; // unknowns up to which the lag is measured
 enum { QUASI_NEWTON, DAMPED, PAPER = METHODS - 1 };
 
 typedef struct variant {
@@ -33,20 +40,21 @@ typedef struct variant {
     ruga_linear_kind linear;
     ruga_skin_motion motion;
     bool slow;
+    int most; // unknowns up to which it runs where no methods are named
 } variant;
 
 static const variant variants[METHODS] = {
-    {"quasi-newton", RUGA_METHOD_QUASI_NEWTON, RUGA_LINEAR_DIRECT, RUGA_SKIN_STATIC, false},
-    {"damped", RUGA_METHOD_QUASI_NEWTON, RUGA_LINEAR_DIRECT, RUGA_SKIN_DAMPED, false},
-    {"newton", RUGA_METHOD_NEWTON, RUGA_LINEAR_DIRECT, RUGA_SKIN_STATIC, false},
-    {"newton-minres", RUGA_METHOD_NEWTON, RUGA_LINEAR_MINRES, RUGA_SKIN_STATIC, true},
-    {"paper", RUGA_METHOD_PAPER, RUGA_LINEAR_DIRECT, RUGA_SKIN_STATIC, true},
+    {"quasi-newton", RUGA_METHOD_QUASI_NEWTON, RUGA_LINEAR_DIRECT, RUGA_SKIN_STATIC, false, INT_MAX},
+    {"damped", RUGA_METHOD_QUASI_NEWTON, RUGA_LINEAR_DIRECT, RUGA_SKIN_DAMPED, false, INT_MAX},
+    {"newton", RUGA_METHOD_NEWTON, RUGA_LINEAR_DIRECT, RUGA_SKIN_STATIC, false, 0},
+    {"newton-minres", RUGA_METHOD_NEWTON, RUGA_LINEAR_MINRES, RUGA_SKIN_STATIC, true, 13000},
+    {"paper", RUGA_METHOD_PAPER, RUGA_LINEAR_DIRECT, RUGA_SKIN_STATIC, true, 30000},
 };
 
-typedef struct options {
+typedef struct options { // frames 0: by size
     int frames, slow_frames, threads[2], thread_count, case_count;
     int unknowns[MAX_CASES], clusters[MAX_CASES];
-    const char* methods;
+    const char *methods, *plot;
     double relaxation; // of damped motion
     bool per_frame;
     FILE *json, *residuals;
@@ -58,15 +66,18 @@ typedef struct frame {
     ruga_report report;
     ruga_skin_work work;
     double units, unit, move; // time in units; seconds of a unit; largest change of x - Bq, in h
-    double to_mark;           // seconds until the published method's residual was passed
+    double to_mark;           // seconds until the published method's residual was passed, 0 = it did not run
     double lag_max, lag_rms;  // distance to the minimum below a damped state, in h
+    uint64_t bits;            // of the positions
 } frame;
 
 typedef struct run {
     const variant* variant;
     int threads, count;
     frame frames[MAX_FRAMES];
-    double* start; // restart vector of the next frame
+    double* start;            // restart vector of the next frame
+    double *residuals, worst; // of the frame with most units so far
+    int residual_count;
 } run;
 
 typedef struct bench {
@@ -75,29 +86,15 @@ typedef struct bench {
     ruga_state* state;
     ruga_skin_trace* trace;
     double *old_deviation, *relaxed, marks[MAX_FRAMES], setup;
-    size_t bytes_before;
+    size_t bytes_before; // in use by the process before the model is made
 } bench;
 
 // ---- the scene -----------------------------------------------------------------------------------------
 
 static void fill(ruga_model_def* def, const ruga_mesh* mesh, ruga_keyframe_def keys[3], const options* o) {
-    int frames = o->frames;
     bench_pillow_def(mesh, def);
+    bench_pillow_motion(def, WARM, o->frames, keys);
     def->skin.relaxation = o->relaxation;
-    for (int k = 0; k < 3; k++) {
-        keys[k] = ruga_default_keyframe_def();
-        keys[k].has_bump = true;
-        keys[k].bump_center[2] = 0.08;
-        keys[k].bump_radius = 0.06;
-    }
-    keys[1].time = WARM * def->step;
-    keys[1].matrix[0] = 0.99;
-    keys[2].time = (WARM + frames) * def->step;
-    keys[2].matrix[0] = 0.99 - 0.002 * frames;
-    keys[2].bump_depth = 1e-3 * frames;
-    def->keyframes = keys;
-    def->keyframe_count = 3;
-    def->frames = WARM + frames;
 }
 
 // ---- memory of the process -----------------------------------------------------------------------------
@@ -131,12 +128,14 @@ static void reset_peak(void) {
 // Seconds of one numeric factorisation of the matrix at x, its assembly not counted.
 static ruga_status time_unit(ruga_state* state, double* unit) {
     double seconds[TIMINGS];
-    for (int k = 0; k < TIMINGS; k++) {
+    int timings = TIMINGS;
+    for (int k = 0; k < timings; k++) {
         double before = state->skin->work.seconds_factor;
         RUGA_TRY(k == 0 ? ruga_skin_factor(state->skin, state->x, 0, 0) : ruga_skin_refactor(state->skin, 0));
         seconds[k] = state->skin->work.seconds_factor - before;
+        timings = seconds[0] > 1 ? 1 : TIMINGS;
     }
-    *unit = bench_median(TIMINGS, seconds);
+    *unit = bench_median(timings, seconds);
     return RUGA_OK;
 }
 
@@ -184,6 +183,27 @@ static void write_residuals(const bench* b, const run* r, int index, double begi
     }
 }
 
+// FNV-1a of the bytes.
+static uint64_t hash(size_t count, const double* values) {
+    const unsigned char* byte = (const unsigned char*)values;
+    uint64_t h = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < count * sizeof *values; i++) {
+        h = (h ^ byte[i]) * 0x100000001b3u;
+    }
+    return h;
+}
+
+static void keep_worst(const bench* b, run* r, const frame* f, int count) {
+    double units = f->report.seconds_total / f->unit;
+    if (r->residuals && units > r->worst) {
+        r->worst = units;
+        r->residual_count = count;
+        for (int k = 0; k < count; k++) {
+            r->residuals[k] = b->trace[k].residual;
+        }
+    }
+}
+
 static ruga_status run_frame(bench* b, run* r, const double* start, int index, options* o) {
     ruga_state* state = b->state;
     ruga_skin* skin = state->skin;
@@ -200,7 +220,7 @@ static ruga_status run_frame(bench* b, run* r, const double* start, int index, o
     RUGA_TRY(ruga_state_step(b->model, state, &f->report));
     f->work = skin->work;
     int traced = skin->trace_count;
-    f->to_mark = f->report.seconds_total;
+    f->to_mark = b->marks[index] > 0 ? f->report.seconds_total : 0;
     for (int k = traced - 1; k >= 0; k--) {
         f->to_mark = b->trace[k].residual <= b->marks[index] ? b->trace[k].clock - begin : f->to_mark;
     }
@@ -212,8 +232,10 @@ static ruga_status run_frame(bench* b, run* r, const double* start, int index, o
     }
     deviation(state, b->relaxed);
     f->move = largest_difference(skin->n, b->relaxed, b->old_deviation, &unused) / b->model->skin.thickness;
+    f->bits = hash((size_t)skin->n, state->x);
     RUGA_TRY(time_unit(state, &f->unit));
-    if (r->variant->motion == RUGA_SKIN_DAMPED) {
+    keep_worst(b, r, f, traced);
+    if (r->variant->motion == RUGA_SKIN_DAMPED && r->start && skin->n <= LAG_MAX) {
         RUGA_TRY(measure_lag(b, f));
     }
     r->count = index + 1;
@@ -263,9 +285,6 @@ static double move_of(const frame* f) {
 static double residual_of(const frame* f) {
     return f->report.residual_shell;
 }
-static double mark_of(const frame* f) {
-    return f->to_mark;
-}
 static double lag_max_of(const frame* f) {
     return f->lag_max;
 }
@@ -313,7 +332,7 @@ static void print_row(const run* r) {
            "%5.0f %4.1f "
            "%4.0f %7.0f | %8.1e %2d/%-2d %5.1f %5.2f %5.2f\n",
            r->variant->name, r->threads, column(r, seconds_of, false), column(r, seconds_of, true),
-           column(r, mark_of, false), column(r, units_of, false), column(r, units_of, true),
+           r->frames[0].to_mark, column(r, units_of, false), column(r, units_of, true),
            column(r, counted_of, false), column(r, counted_of, true), assembly, factor, solve, energy,
            column(r, iterations_of, false), column(r, iterations_of, true), evaluations,
            column(r, factors_of, false), column(r, factors_of, true), column(r, linear_of, false),
@@ -321,17 +340,18 @@ static void print_row(const run* r) {
            column(r, lag_max_of, true), column(r, lag_rms_of, true));
 }
 
-static void write_json(const bench* b, const run* r, double memory_ratio, options* o) {
+static void write_json(const bench* b, const run* r, bool same_bits, double memory_ratio, options* o) {
     (void)fprintf(
         o->json,
         "%s\n{\"unknowns\": %d, \"clusters\": %d, \"elements\": %d, \"method\": \"%s\", \"threads\": %d, "
         "\"setup\": %.4g, \"median\": %.4g, \"worst\": %.4g, \"to_mark\": %.4g, \"units_median\": %.4g, "
-        "\"units_worst\": %.4g, \"unit_seconds\": %.4g, \"minima\": %d, \"memory_over_factor\": %.4g, "
+        "\"units_worst\": %.4g, \"unit_seconds\": %.4g, \"minima\": %d, \"same_bits\": %s, "
+        "\"memory_over_factor\": %.4g, "
         "\"frames\": [",
         o->first_row ? "[" : ",", 3 * b->mesh.vertex_count, b->model->clusters.count,
         b->model->lattice.element_count, r->variant->name, r->threads, b->setup, column(r, seconds_of, false),
-        column(r, seconds_of, true), column(r, mark_of, false), column(r, units_of, false),
-        column(r, units_of, true), r->frames[0].unit, minima(r), memory_ratio);
+        column(r, seconds_of, true), r->frames[0].to_mark, column(r, units_of, false),
+        column(r, units_of, true), r->frames[0].unit, minima(r), same_bits ? "true" : "false", memory_ratio);
     o->first_row = false;
     for (int k = 0; k < r->count; k++) {
         const frame* f = &r->frames[k];
@@ -350,12 +370,21 @@ static void write_json(const bench* b, const run* r, double memory_ratio, option
     (void)fprintf(o->json, "]}");
 }
 
+// Whether the frames are those of the first number of threads, bit by bit.
+static bool has_same_bits(const run* r, const run* first) {
+    bool same = true;
+    for (int k = 0; k < r->count; k++) {
+        same = same && r->frames[k].bits == first->frames[k].bits;
+    }
+    return same;
+}
+
 static void report(bench* b, const run* runs, int count, options* o) {
-    double factor = (double)ruga_factor_bytes(b->state->skin->factor);
+    double factor = 8 * b->state->skin->info.entries;
     size_t peak = process_bytes("VmHWM:");
     double ratio = peak > b->bytes_before ? (double)(peak - b->bytes_before) / factor : 0;
-    printf("\n%d unknowns, %d clusters, %d elements; setup %.2f s; factor %.1f MB, peak above start %.2f "
-           "factors\n",
+    printf("\n%d unknowns, %d clusters, %d elements; setup %.2f s; factor %.1f MB, peak %.2f factors "
+           "above the start, model and all\n",
            3 * b->mesh.vertex_count, b->model->clusters.count, b->model->lattice.element_count, b->setup,
            factor / 1e6, ratio);
     printf("%-13s %s %8s %8s %8s | %6s %6s | %6s %6s | %s | %5s %5s %5s %4s %4s %7s | %8s %5s %5s %5s %5s\n",
@@ -365,6 +394,9 @@ static void report(bench* b, const run* runs, int count, options* o) {
     for (int v = 0; v < count; v++) {
         if (runs[v].count) {
             print_row(&runs[v]);
+            if (!has_same_bits(&runs[v], &runs[v % METHODS])) {
+                printf("    its frames depend on the number of threads\n");
+            }
         }
     }
     for (int v = 0; v < count; v++) {
@@ -372,15 +404,51 @@ static void report(bench* b, const run* runs, int count, options* o) {
             print_frames(&runs[v]);
         }
         if (runs[v].count && o->json) {
-            write_json(b, &runs[v], ratio, o);
+            write_json(b, &runs[v], has_same_bits(&runs[v], &runs[v % METHODS]), ratio, o);
         }
     }
     (void)fflush(stdout);
 }
 
+// Residual against iteration of the worst frames, one thread.
+static ruga_status plot(const bench* b, const run* runs, const options* o) {
+    ruga_status status = RUGA_OK;
+    ruga_plot_series series[METHODS] = {{.name = NULL}};
+    char path[1024], title[128];
+    double* iteration = NULL;
+    int count = 0, clusters = b->model->clusters.count, unknowns = 3 * b->mesh.vertex_count;
+    RUGA_TRY(RUGA_NEW(iteration, TRACE));
+    for (int k = 0; k < TRACE; k++) {
+        iteration[k] = k;
+    }
+    for (int v = 0; v < METHODS; v++) {
+        const run* r = &runs[v];
+        if (r->residual_count) {
+            series[count++] = (ruga_plot_series){.name = r->variant->name,
+                                                 .count = r->residual_count,
+                                                 .x = iteration,
+                                                 .y = r->residuals,
+                                                 .style = RUGA_PLOT_LINE,
+                                                 .color = v + 1};
+        }
+    }
+    (void)snprintf(path, sizeof path, "%s/residuals-%d-%d.svg", o->plot, unknowns, clusters);
+    (void)snprintf(title, sizeof title, "Worst frames, %d unknowns, %d clusters", unknowns, clusters);
+    ruga_plot_def def = {.title = title,
+                         .x = {.name = "iteration"},
+                         .y = {.name = "residual / f_ref", .logarithmic = true},
+                         .series_count = count,
+                         .series = series};
+    RUGA_TRY_DONE(ruga_plot_write(&def, path));
+done:
+    ruga_release(iteration);
+    return status;
+}
+
 // ---- one case ------------------------------------------------------------------------------------------
 
-static bool is_listed(const char* list, const char* name) {
+static bool is_listed(const char* list, const variant* v, int unknowns) {
+    const char* name = v->name;
     size_t length = strlen(name);
     for (; list && *list; list += *list == ',') {
         if (strncmp(list, name, length) == 0 && (list[length] == ',' || !list[length])) {
@@ -388,7 +456,7 @@ static bool is_listed(const char* list, const char* name) {
         }
         list += strcspn(list, ",");
     }
-    return !list;
+    return !list && unknowns <= v->most;
 }
 
 static ruga_status create(bench* b, int unknowns, int clusters, const options* o) {
@@ -406,6 +474,7 @@ static ruga_status create(bench* b, int unknowns, int clusters, const options* o
     RUGA_TRY(RUGA_NEW(b->old_deviation, 3 * b->mesh.vertex_count));
     RUGA_TRY(RUGA_NEW(b->relaxed, 3 * b->mesh.vertex_count));
     RUGA_TRY(RUGA_NEW(b->trace, TRACE));
+    memset(b->trace, 0, TRACE * sizeof *b->trace);
     b->state->skin->trace = b->trace;
     b->state->skin->trace_size = TRACE;
     return RUGA_OK;
@@ -424,12 +493,18 @@ static void destroy(bench* b) {
 static ruga_status warm(bench* b, ruga_skin_motion motion, const double* rest, double* start) {
     b->model->solver.method = RUGA_METHOD_QUASI_NEWTON;
     b->model->skin.motion = motion;
+    ruga_set_threads(0);
     RUGA_TRY(ruga_state_load(b->state, rest));
     for (int k = 0; k < WARM; k++) {
         RUGA_TRY(ruga_state_step(b->model, b->state, NULL));
     }
     ruga_state_save(b->state, start);
     return RUGA_OK;
+}
+
+static void choose_frames(int unknowns, int clusters, options* o) {
+    o->frames = unknowns < 20000 ? 20 : unknowns < 50000 ? 10 : unknowns < 150000 ? 4 : 2;
+    o->frames = clusters > 1000 && o->frames > 4 ? 4 : o->frames;
 }
 
 static ruga_status bench_case(int unknowns, int clusters, options* o) {
@@ -444,7 +519,7 @@ static ruga_status bench_case(int unknowns, int clusters, options* o) {
     for (int motion = 0; motion < 2; motion++) {
         RUGA_TRY_DONE(RUGA_NEW(start[motion], ruga_state_restart_size(b.model)));
         RUGA_TRY_DONE(RUGA_NEW(next[motion], ruga_state_restart_size(b.model)));
-        if (motion == 0 || is_listed(o->methods, variants[DAMPED].name)) {
+        if (motion == 0 || is_listed(o->methods, &variants[DAMPED], unknowns)) {
             RUGA_TRY_DONE(warm(&b, motion ? RUGA_SKIN_DAMPED : RUGA_SKIN_STATIC, rest, start[motion]));
         }
     }
@@ -453,13 +528,16 @@ static ruga_status bench_case(int unknowns, int clusters, options* o) {
         runs[v].variant = &variants[kind];
         runs[v].threads = o->threads[v / METHODS];
         runs[v].start = kind <= DAMPED && v < METHODS ? next[kind] : NULL;
+        if (o->plot && v < METHODS) {
+            RUGA_TRY_DONE(RUGA_NEW(runs[v].residuals, TRACE));
+        }
     }
     for (int k = 0; k < o->frames; k++) {
         // The published method first: its final residual is the mark for the others.
         for (int v = count - 1; v >= 0; v--) {
             const variant* kind = runs[v].variant;
-            bool unseen = kind->slow && (k >= o->slow_frames || v >= METHODS);
-            if (unseen || !is_listed(o->methods, kind->name)) {
+            bool unseen = (kind->slow && k >= o->slow_frames) || (v >= METHODS && kind > &variants[DAMPED]);
+            if (unseen || !is_listed(o->methods, kind, unknowns)) {
                 continue;
             }
             RUGA_TRY_DONE(run_frame(&b, &runs[v], start[kind->motion == RUGA_SKIN_DAMPED], k, o));
@@ -470,8 +548,14 @@ static ruga_status bench_case(int unknowns, int clusters, options* o) {
         }
     }
     report(&b, runs, count, o);
+    if (o->plot) {
+        RUGA_TRY_DONE(plot(&b, runs, o));
+    }
 done:
     ruga_release(rest);
+    for (int v = 0; v < count; v++) {
+        ruga_release(runs[v].residuals);
+    }
     for (int motion = 0; motion < 2; motion++) {
         ruga_release(start[motion]);
         ruga_release(next[motion]);
@@ -492,6 +576,8 @@ static bool read_option(options* o, const char* name, const char* value) {
         o->methods = value;
     } else if (strcmp(name, "--relaxation") == 0) {
         o->relaxation = atof(value);
+    } else if (strcmp(name, "--plot") == 0) {
+        o->plot = value;
     } else if (strcmp(name, "--threads") == 0) {
         o->thread_count = sscanf(value, "%d,%d", &o->threads[0], &o->threads[1]);
     } else if (strcmp(name, "--json") == 0) {
@@ -528,21 +614,18 @@ static bool read_arguments(int argc, char** argv, options* o) {
 }
 
 int main(int argc, char** argv) {
-    static const int usual[][2] = {{3138, 0}, {12534, 0}, {28194, 0}, {28194, 2108}};
-    options o = {.frames = 20,
-                 .slow_frames = 1,
-                 .threads = {1},
-                 .thread_count = 1,
-                 .relaxation = 20e-3,
-                 .first_row = true};
-    if (!read_arguments(argc, argv, &o)) {
+    options o = {
+        .slow_frames = 1, .threads = {1, 2}, .thread_count = 2, .relaxation = 0.2, .first_row = true};
+    if (!read_arguments(argc, argv, &o) || o.case_count == 0) {
         (void)fprintf(stderr, "bench: see the head of tests/bench/bench.c for the arguments\n");
         return 2;
     }
-    int count = o.case_count ? o.case_count : 4;
-    for (int k = 0; k < count; k++) {
-        int unknowns = o.case_count ? o.unknowns[k] : usual[k][0],
-            clusters = o.case_count ? o.clusters[k] : usual[k][1];
+    bool by_size = o.frames == 0;
+    for (int k = 0; k < o.case_count; k++) {
+        int unknowns = o.unknowns[k], clusters = o.clusters[k];
+        if (by_size) {
+            choose_frames(unknowns, clusters, &o);
+        }
         if (bench_case(unknowns, clusters, &o) != RUGA_OK) {
             (void)fprintf(stderr, "%s\n", ruga_last_error());
             return 1;

@@ -36,6 +36,23 @@ void bench_pillow_def(const ruga_mesh* mesh, ruga_model_def* def) {
     def->solver.allow_coarse = true;
 }
 
+void bench_pillow_motion(ruga_model_def* def, int warm, int frames, ruga_keyframe_def keys[3]) {
+    for (int k = 0; k < 3; k++) {
+        keys[k] = ruga_default_keyframe_def();
+        keys[k].has_bump = true;
+        keys[k].bump_center[2] = 0.08;
+        keys[k].bump_radius = 0.06;
+    }
+    keys[1].time = warm * def->step;
+    keys[1].matrix[0] = 0.99;
+    keys[2].time = (warm + frames) * def->step;
+    keys[2].matrix[0] = 0.99 - 0.002 * frames;
+    keys[2].bump_depth = 1e-3 * frames;
+    def->keyframes = keys;
+    def->keyframe_count = 3;
+    def->frames = warm + frames;
+}
+
 static int compare(const void* a, const void* b) {
     double x = *(const double*)a, y = *(const double*)b;
     return (x > y) - (x < y);
