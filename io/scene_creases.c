@@ -56,6 +56,7 @@ static ruga_crease_def common(const ruga_scene_crease* crease, const ruga_skin_d
     const ruga_scene_points *k = &crease->stiffness, *rest = &crease->rest;
     def.kind = crease->cut ? RUGA_CREASE_CUT : RUGA_CREASE_FOLD;
     def.freedom = crease->freedom;
+    def.start = crease->start;
     def.assignment = crease->cut ? 'C' : 'U';
     def.stiffness = crease->length > 0 ? rigidity / crease->length : k->count > 0 ? k->value[0] : 0;
     def.point_stiffness = k->count > 1 ? k->value : NULL;

@@ -286,6 +286,10 @@ static const struct {
               "creases:  [{curve: {polyline: [[0, -6 cm, 0], [0, 6 cm, 0]]}, hinge: {rest: 90 deg}}]\n"
               "start:    {fold: 0.5, velocity: [0, 0, -2]}   # half folded, and falling\n"},
     {"time", "time: {step: 20 ms, frames: 50}\n"},
+    {"start", "mesh: {make: {shape: sheet, size: [20 cm, 12 cm], edge: 5 mm}}\n"
+              "skin: {motion: dynamic}\n"
+              "interior: none\n"
+              "start: {velocity: [1, 0, 2]}\n"},
     {"gravity", "gravity: [0, 0, -9.81]\n"},
     {"handles", "handles:\n"
                 "  - {region: {plane: {center: [-20 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}\n"

@@ -316,6 +316,9 @@ const ruga_key ruga_keys[] = {
     CHOICE("creases.N.freedom", CREASE(freedom), "auto", "auto|single|full",
            "single: one hinge for the whole curve, right where it is straight and of one angle. full: what a mesh that "
            "conforms to the curve may do. auto: full where the curve bends, closes, meets another, or its values vary."),
+    NUMBER("creases.N.start", CREASE(start), "s", "0 s", NOT_NEGATIVE,
+           "In dynamic motion: until then the curve bends like the material beside it, then it is a crease. The sheet is "
+           "cut from the beginning, so freedom: full is what leaves it free to bend until then."),
     SECTION("creases.N.hinge", "{}", "The spring about the curve, k l / 2 (theta - rest)^2 for a length l of it."),
     VALUES("creases.N.hinge.stiffness", CREASE(stiffness), "N", "0.02 N", NOT_NEGATIVE, NULL,
            "k, in N m/rad for each m. One value, or one for each point of polyline, uv or vertices."),

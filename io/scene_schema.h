@@ -93,6 +93,7 @@ typedef struct ruga_scene_crease {
     ruga_region path; // its vertices
     bool closed, cut;
     ruga_crease_freedom freedom;
+    double start; // s
     ruga_scene_points stiffness, rest;
     double length, scale; // length 0 = not given
     int key_count;

@@ -33,7 +33,7 @@ void ruga_creases_destroy(ruga_creases** creases) {
     ruga_sewing_clear(&c->sewing);
     ruga_connectivity_clear(&c->shown);
     void* const owned[] = {c->law,  c->segment, c->hinge,    c->stiffness, c->drawn, c->rest,
-                           c->area, c->share,   c->fraction, c->mass,      c->bend,  c->pair};
+                           c->area, c->share,   c->fraction, c->mass,      c->bend,  c->pair,    c->whole};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
         ruga_release(owned[i]);
     }
@@ -66,6 +66,9 @@ static ruga_status check_def(int index, const ruga_crease_def* def) {
         return ruga_fail(RUGA_BAD_INPUT, "creases.%d.stiffness is %g; it must be 0 or above", index,
                          def->stiffness);
     }
+    if (!isfinite(def->start)) {
+        return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start is not finite", index);
+    }
     if (isinf(def->rest)) {
         return ruga_fail(RUGA_BAD_INPUT, "creases.%d.rest is not finite", index);
     }
@@ -89,7 +92,7 @@ static ruga_status check_def(int index, const ruga_crease_def* def) {
 
 static ruga_status copy_law(const ruga_crease_def* def, ruga_crease_law* law) {
     *law = (ruga_crease_law){
-        .yield = def->yield, .rate = def->rate, .hardening = def->hardening, .assignment = def->assignment};
+        .start = def->start > 0 ? def->start : -INFINITY, .yield = def->yield, .rate = def->rate, .hardening = def->hardening, .assignment = def->assignment};
     RUGA_TRY(RUGA_NEW(law->keys, def->key_count));
     for (int k = 0; k < def->key_count; k++) {
         law->keys[k] = def->keys[k];
@@ -243,6 +246,7 @@ static ruga_status set_hinges(ruga_creases* c, const ruga_crease_def* defs, cons
     RUGA_TRY(RUGA_NEW(c->hinge, count));
     RUGA_TRY(RUGA_NEW_ZERO(c->stiffness, count));
     RUGA_TRY(RUGA_NEW(c->drawn, count));
+    RUGA_TRY(RUGA_NEW_ZERO(c->whole, count));
     RUGA_TRY(RUGA_NEW(c->rest, count));
     RUGA_TRY(RUGA_NEW(c->pair, (RUGA_HINGE_NODES * (RUGA_HINGE_NODES - 1) / 2) * (size_t)count));
     RUGA_TRY_DONE(RUGA_NEW(made, count));
@@ -279,7 +283,7 @@ done:
 
 // k = l / (A1 / D1 + A2 / D2) for each length, A the material on both sides: as in a mesh that conforms.
 void ruga_creases_set_bending(ruga_creases* c, const ruga_shell_material* material) {
-    for (int h = c->segment_count; h < c->hinge_count; h++) {
+    for (int h = 0; h < c->hinge_count; h++) {
         const ruga_segment* segment = &c->cut.segment[c->segment[h]];
         double softness = 0;
         for (int side = 0; side < 2; side++) {
@@ -288,7 +292,8 @@ void ruga_creases_set_bending(ruga_creases* c, const ruga_shell_material* materi
             softness += piece->fraction * triangle_area(&c->raster, piece->triangle) /
                         ruga_shell_material_bending(material, p);
         }
-        c->stiffness[h] = segment->length / softness;
+        c->whole[h] = segment->length / softness;
+        c->stiffness[h] = h < c->segment_count ? c->stiffness[h] : c->whole[h];
     }
 }
 
@@ -505,6 +510,10 @@ done:
 
 int ruga_crease_law_of(const ruga_creases* c, int hinge) {
     return c->raster.curve[c->hinge[hinge].curve].label;
+}
+
+bool ruga_crease_is_there(const ruga_creases* c, int hinge, double time) {
+    return time >= c->law[ruga_crease_law_of(c, hinge)].start;
 }
 
 double ruga_crease_rest_at(const ruga_creases* c, int hinge, double time) {

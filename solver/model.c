@@ -30,6 +30,11 @@ static ruga_status check_motion(const ruga_model_def* def) {
     if (s->motion != RUGA_SKIN_DYNAMIC) {
         const ruga_start_def* start = &def->start;
         bool started = start->fold != 0 || start->cone != 0 || ruga_norm(start->velocity) > 0;
+        for (int i = 0; i < def->crease_count; i++) {
+            if (def->creases[i].start > 0) {
+                return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.motion: dynamic", i);
+            }
+        }
         return s->model == RUGA_SKIN_SPRINGS
                    ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
                : started ? ruga_fail(RUGA_BAD_INPUT,

@@ -3,6 +3,9 @@
 //
 // Rest angles move linearly within a frame, from what they are to what keyframes and plastic flow make of
 // them at its end (hinges.h). Handles hold nodes where they are at the start, and move them from there.
+//
+// A crease that comes later has until then the stiffness and the angle of the material: the sheet is cut from
+// the beginning, and when it becomes a crease nothing jumps but the moment at it.
 #include "solver/moving.h"
 
 #include "core/memory.h"
@@ -23,6 +26,8 @@ struct ruga_moving {
     int nodes;
     double begin;                     // s, of the frame
     double *velocity, *start, *slope; // [nodes][3]
+    bool later;                       // some creases come later
+    double* stiffness;                // [segments] N, of now
 };
 
 void ruga_moving_destroy(ruga_moving** moving) {
@@ -36,6 +41,7 @@ void ruga_moving_destroy(ruga_moving** moving) {
     ruga_release(m->velocity);
     ruga_release(m->start);
     ruga_release(m->slope);
+    ruga_release(m->stiffness);
     ruga_release(m);
     *moving = NULL;
 }
@@ -48,27 +54,28 @@ static ruga_status create_dynamic(ruga_moving* m) {
     const ruga_creases* creases = model->creases;
     ruga_dynamic_def def = ruga_default_dynamic_def();
     bool* held = NULL;
-    double* stiffness = NULL;
     def.elastic.raster = creases ? &creases->raster : &m->raster;
     def.elastic.cut = creases ? &creases->cut : &m->cut;
     def.elastic.skin = model->skin;
     def.damping = model->skin.damping;
     def.drag = model->skin.drag;
     memcpy(def.gravity, model->gravity, sizeof def.gravity);
-    RUGA_TRY_DONE(RUGA_NEW_ZERO(stiffness, def.elastic.cut->segment_count));
-    for (int h = 0; creases && h < creases->segment_count; h++) {
-        stiffness[creases->segment[h]] = creases->stiffness[h];
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(m->stiffness, def.elastic.cut->segment_count));
+    for (int h = 0; creases && h < creases->segment_count;
+         h++) { // of those that come later there is always some
+        bool there = ruga_crease_is_there(creases, h, 0);
+        m->stiffness[creases->segment[h]] = there ? creases->stiffness[h] : creases->whole[h];
+        m->later = m->later || !there;
     }
     RUGA_TRY_DONE(RUGA_NEW(held, 3 * (size_t)m->nodes));
     for (int i = 0; i < 3 * m->nodes; i++) {
         held[i] = model->skin_handle[i] >= 0;
     }
-    def.elastic.stiffness = stiffness;
+    def.elastic.stiffness = m->stiffness;
     def.held = held;
     RUGA_TRY_DONE(ruga_dynamic_create(&def, &m->dynamic));
 done:
     ruga_release(held);
-    ruga_release(stiffness);
     return status;
 }
 
@@ -141,6 +148,7 @@ static void take_angles(ruga_moving* m) {
         double turn = h < creases->segment_count ? ruga_crease_rest_at(creases, h, 0) - creases->drawn[h] : 0;
         angle[creases->segment[h]] = creases->drawn[h] + m->model->start.fold * turn;
         m->skin->hinges->near[h] = angle[creases->segment[h]];
+        m->skin->hinges->rest[h] = angle[creases->segment[h]]; // at rest as it starts
     }
 }
 
@@ -195,7 +203,12 @@ static void load(void* context, double time, const double* x, double* force, dou
     if (creases) {
         ruga_hinges_advance(m->skin->hinges, fmin((time - m->begin) / m->model->step, 1));
         for (int h = 0; h < creases->segment_count; h++) {
-            rest[creases->segment[h]] = m->skin->hinges->rest[h];
+            bool there = ruga_crease_is_there(creases, h, time);
+            rest[creases->segment[h]] = there ? m->skin->hinges->rest[h] : creases->drawn[h];
+            m->stiffness[creases->segment[h]] = there ? creases->stiffness[h] : creases->whole[h];
+        }
+        if (m->later) {
+            ruga_elastic_set_stiffness(ruga_dynamic_elastic(m->dynamic), m->stiffness);
         }
     }
 }
@@ -225,7 +238,8 @@ void ruga_moving_measure(ruga_moving* m, double time, const double* x, ruga_repo
     const ruga_creases* creases = m->model->creases;
     ruga_elastic* elastic = ruga_dynamic_elastic(m->dynamic);
     for (int h = 0; creases && h < creases->segment_count; h++) {
-        elastic->rest[creases->segment[h]] = m->skin->hinges->rest[h];
+        bool there = ruga_crease_is_there(creases, h, time);
+        elastic->rest[creases->segment[h]] = there ? m->skin->hinges->rest[h] : creases->drawn[h];
     }
     ruga_elastic_force(elastic, x, m->slope, &e);
     put_energies(m, time, x, &e, report);
