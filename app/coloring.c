@@ -184,15 +184,11 @@ done:
 
 // ---- creases -------------------------------------------------------------------------------------------
 
-// Marks the edge of the mesh that a segment lies on, in both triangles; false where there is none.
-static bool mark_edge(const ruga_mesh* mesh, const ruga_connectivity* c, int a, int b, int segment,
-                      int* line) {
+// Marks the edge of the mesh between two vertices in both of its triangles.
+static void mark_edge(const ruga_connectivity* c, int a, int b, int segment, int* line) {
     for (int k = c->neighbour_start[a]; k < c->neighbour_start[a + 1]; k++) {
-        if (c->neighbour[k] != b) {
-            continue;
-        }
         int edge = c->neighbour_edge[k];
-        for (int side = 0; side < 2; side++) {
+        for (int side = 0; side < 2 && c->neighbour[k] == b; side++) {
             int f = c->edge_triangle[edge][side];
             for (int i = 0; f >= 0 && i < 3; i++) {
                 if (c->triangle_edge[f][i] == edge) {
@@ -200,63 +196,34 @@ static bool mark_edge(const ruga_mesh* mesh, const ruga_connectivity* c, int a, 
                 }
             }
         }
-        return true;
     }
-    (void)mesh;
-    return false;
-}
-
-static ruga_status mark_segments(ruga_coloring* c, const double* segments) {
-    const ruga_mesh* mesh = ruga_result_mesh(c->reader);
-    ruga_connectivity connectivity = {0};
-    ruga_status status = ruga_connectivity_create(mesh, &connectivity);
-    for (int s = 0; s < c->line_count && status == RUGA_OK; s++) {
-        const double* ends = segments + 2 * (size_t)s;
-        bool good = ends[0] >= 0 && ends[1] >= 0 && ends[0] < mesh->vertex_count &&
-                    ends[1] < mesh->vertex_count &&
-                    mark_edge(mesh, &connectivity, (int)ends[0], (int)ends[1], s, c->line);
-        if (!good) {
-            status = ruga_fail(RUGA_BAD_INPUT, "%s: segment %d of /creases/segments is no edge of the mesh",
-                               c->path, s);
-        }
-    }
-    ruga_connectivity_clear(&connectivity);
-    return status;
 }
 
 // Creases of the result, where it has some.
 static ruga_status read_segments(ruga_coloring* c) {
-    size_t size[2];
-    double* segments;
-    int corners = 3 * ruga_result_mesh(c->reader)->triangle_count;
-    RUGA_TRY(ruga_result_read_optional(c->reader, "/creases/segments", 2, size, &segments));
-    if (!segments || size[1] != 2 || size[0] == 0) {
-        ruga_release(segments);
+    const ruga_mesh* mesh = ruga_result_mesh(c->reader);
+    const ruga_result_creases* creases = ruga_result_reader_header(c->reader)->creases;
+    ruga_connectivity connectivity = {0};
+    size_t corners = 3 * (size_t)mesh->triangle_count;
+    if (!creases) {
         return RUGA_OK;
     }
-    c->line_count = (int)size[0];
-    ruga_status status = RUGA_NEW(c->line, corners);
-    for (int i = 0; i < corners && status == RUGA_OK; i++) {
+    RUGA_TRY(RUGA_NEW(c->line_angle, creases->segment_count));
+    RUGA_TRY(RUGA_NEW(c->line, corners));
+    for (size_t i = 0; i < corners; i++) {
         c->line[i] = -1;
     }
-    status = status == RUGA_OK ? mark_segments(c, segments) : status;
-    ruga_release(segments);
-    return status;
+    RUGA_TRY(ruga_connectivity_create(mesh, &connectivity));
+    for (int s = 0; s < creases->segment_count; s++) {
+        mark_edge(&connectivity, creases->segment[2 * s], creases->segment[2 * s + 1], s, c->line);
+    }
+    ruga_connectivity_clear(&connectivity);
+    return RUGA_OK;
 }
 
 static ruga_status choose_creases(ruga_coloring* c) {
-    size_t size[2];
-    if (!c->line) {
-        return ruga_fail(RUGA_BAD_INPUT, "--color creases: %s has no creases", c->path);
-    }
-    RUGA_TRY(ruga_result_read_optional(c->reader, "/creases/angle", 2, size, &c->line_angle));
-    if (c->line_angle && size[1] != (size_t)c->line_count) {
-        return ruga_fail(RUGA_BAD_INPUT, "%s: /creases/angle has %zu columns for %d segments", c->path,
-                         size[1], c->line_count);
-    }
-    c->frame_count = c->line_angle ? (int)size[0] : 0;
     c->scale = (ruga_scale){.name = "fold angle, deg (valley > 0)", .unit = RUGA_PI / 180};
-    return RUGA_OK;
+    return c->line ? RUGA_OK : ruga_fail(RUGA_BAD_INPUT, "--color creases: %s has no creases", c->path);
 }
 
 // ---- life ----------------------------------------------------------------------------------------------
@@ -364,8 +331,9 @@ static ruga_status compute(ruga_coloring* c, int frame, const double* position, 
         ruga_stress_compute(mesh, &c->skin, position, c->work, c->value);
         *values = c->value;
     } else if (c->kind == RUGA_COLORING_CREASES) {
-        *values = frame < c->frame_count ? c->line_angle + (size_t)frame * (size_t)c->line_count : NULL;
-        *count = c->line_count;
+        RUGA_TRY(ruga_result_read_creases(c->reader, frame, c->line_angle, NULL, NULL));
+        *values = c->line_angle;
+        *count = ruga_result_reader_header(c->reader)->creases->segment_count;
     }
     return RUGA_OK;
 }

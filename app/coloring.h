@@ -32,11 +32,9 @@ typedef struct ruga_coloring {
     ruga_stress_skin skin;
     double *value, *work; // [V]
     int* place;           // [V]
-    int line_count;
-    int* line;          // [F][3]
-    double* line_angle; // [T][lines] rad
-    int frame_count;    // of line_angle
-    double* position;   // [V][3] work of ruga_coloring_scan
+    int* line;            // [F][3] segments of the creases along the edges, or NULL
+    double* line_angle;   // [S] rad, of a frame
+    double* position;     // [V][3] work of ruga_coloring_scan
     double* embedded;
     ruga_scale scale; // of values at vertices or lines
     char note[96];

@@ -106,8 +106,8 @@ static void say_sizes(const ruga_arguments* arguments, const facts* f) {
     char frame[32], run[32];
     ruga_duration(e->seconds_per_frame, frame);
     ruga_duration(e->seconds_per_frame * m->frames, run);
-    ruga_say(arguments, "sizes\n    %-28s %d vertices, %d triangles\n", "mesh", m->mesh.vertex_count,
-             m->mesh.triangle_count);
+    ruga_say(arguments, "sizes\n    %-28s %d vertices, %d triangles\n", "mesh",
+             ruga_model_shown(m)->vertex_count, ruga_model_shown(m)->triangle_count);
     if (m->has_interior) {
         ruga_say(arguments, "    %-28s %d\n    %-28s %d, %d of them superimposed; %d nodes\n", "clusters",
                  m->seam, "elements", m->lattice.element_count, m->lattice.superimposed,
@@ -175,6 +175,14 @@ static void add_key(const char* key, const char* value, const char* unit, bool g
                                                    unit ? unit : "", "default", !given));
 }
 
+static json_t* creases_json(const ruga_model* m) {
+    const ruga_creases* c = m->creases;
+    return c ? json_pack("{s:i, s:i, s:i, s:i, s:i, s:i}", "curves", c->raster.curve_count, "segments",
+                         c->segment_count, "triangles", c->raster.mesh.triangle_count, "pieces",
+                         c->cut.piece_count, "nodes", c->cut.node_count, "rows", c->sewing.row_count)
+             : json_null();
+}
+
 static json_t* facts_json(const facts* f) {
     const ruga_model* m = f->model;
     const ruga_estimate* e = &f->estimate;
@@ -193,16 +201,16 @@ static json_t* facts_json(const facts* f) {
     return json_pack(
         "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:i, s:o, "
         "s:o, "
-        "s:o, s:b}",
+        "s:o, s:b, s:o}",
         "keys", keys, "wavelength_range", range, "critical_strain_range", strains, "wavelength", wavelength,
         "critical_strain", critical, "strain", ruga_json_number(f->strain), "amplitude",
         ruga_json_number(f->amplitude), "edges_per_wavelength", ruga_json_number(f->edges), "mean_edge",
-        ruga_json_number(m->mean_edge), "vertices", m->mesh.vertex_count, "triangles", m->mesh.triangle_count,
-        "clusters", m->seam, "elements", m->lattice.element_count, "superimposed", m->lattice.superimposed,
-        "lattice_nodes", m->lattice.node_count, "degrees_of_freedom", unknowns, "memory_bytes",
-        ruga_json_number(e->bytes), "frames", m->frames, "seconds_per_frame",
+        ruga_json_number(m->mean_edge), "vertices", ruga_model_shown(m)->vertex_count, "triangles",
+        ruga_model_shown(m)->triangle_count, "clusters", m->seam, "elements", m->lattice.element_count,
+        "superimposed", m->lattice.superimposed, "lattice_nodes", m->lattice.node_count, "degrees_of_freedom",
+        unknowns, "memory_bytes", ruga_json_number(e->bytes), "frames", m->frames, "seconds_per_frame",
         ruga_json_number(e->seconds_per_frame), "seconds", ruga_json_number(e->seconds_per_frame * m->frames),
-        "warnings", warnings, "ok", !f->refused);
+        "warnings", warnings, "ok", !f->refused, "creases", creases_json(m));
 }
 
 // ---- the command ---------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@
 #include <string.h>
 
 const ruga_panel_kind ruga_panel_kinds[] = {
-    {"energy", "membrane, bending, foundation, interior, kinetic, external and their sum"},
+    {"energy", "membrane, bending, foundation, interior, kinetic, external, hinges and their sum"},
     {"residual", "of the skin, the coupled system and the constraints"},
     {"iterations", "Newton steps, linear iterations, factorisations and substeps"},
     {"seconds", "where the time of a frame went"},
@@ -54,13 +54,10 @@ typedef struct field {
 #define COUNT(label, member)                                                                                 \
     { label, offsetof(ruga_report, member), true }
 
-static const field energies[] = {FIELD("membrane", energy_membrane),
-                                 FIELD("bending", energy_bending),
-                                 FIELD("foundation", energy_foundation),
-                                 FIELD("interior", energy_interior),
-                                 FIELD("kinetic", energy_kinetic),
-                                 FIELD("external", energy_external),
-                                 {NULL, 0, false}};
+static const field energies[] = {FIELD("membrane", energy_membrane),     FIELD("bending", energy_bending),
+                                 FIELD("foundation", energy_foundation), FIELD("interior", energy_interior),
+                                 FIELD("kinetic", energy_kinetic),       FIELD("external", energy_external),
+                                 FIELD("hinges", energy_hinge),          {NULL, 0, false}};
 static const field residuals[] = {FIELD("skin", residual_shell),
                                   FIELD("coupled", residual_coupled),
                                   FIELD("constraints", constraint_residual),
@@ -196,12 +193,12 @@ static ruga_status read_wrinkles(job* j, bool amplitude) {
 // ---- creases and handles -------------------------------------------------------------------------------
 
 // Mean and range over the segments that end up as valleys, or as mountains.
-static ruga_status add_folds(job* j, const double* angle, int segments, bool valley) {
-    double *mean, sign = valley ? 1 : -1;
+static ruga_status add_folds(job* j, bool valley, const double* last, double* angle) {
+    int segments = ruga_result_reader_header(j->reader)->creases->segment_count;
     int frames = j->panels->frame_count, count = 0;
-    const double* last = angle + (size_t)(frames - 1) * (size_t)segments;
+    double* mean;
     for (int s = 0; s < segments; s++) {
-        count += sign * last[s] > 0 || (valley && last[s] == 0);
+        count += (last[s] >= 0) == valley;
     }
     if (count == 0) {
         return RUGA_OK;
@@ -211,11 +208,12 @@ static ruga_status add_folds(job* j, const double* angle, int segments, bool val
     RUGA_TRY(RUGA_NEW(out->low, frames));
     RUGA_TRY(RUGA_NEW(out->high, frames));
     for (int frame = 0; frame < frames; frame++) {
+        RUGA_TRY(ruga_result_read_creases(j->reader, frame, angle, NULL, NULL));
         out->low[frame] = INFINITY;
         out->high[frame] = -INFINITY;
         for (int s = 0; s < segments; s++) {
-            if (sign * last[s] > 0 || (valley && last[s] == 0)) {
-                double degrees = angle[(size_t)frame * (size_t)segments + (size_t)s] * 180 / RUGA_PI;
+            if ((last[s] >= 0) == valley) {
+                double degrees = angle[s] * 180 / RUGA_PI;
                 mean[frame] += degrees / count;
                 out->low[frame] = fmin(out->low[frame], degrees);
                 out->high[frame] = fmax(out->high[frame], degrees);
@@ -226,38 +224,38 @@ static ruga_status add_folds(job* j, const double* angle, int segments, bool val
 }
 
 static ruga_status read_angles(job* j) {
-    size_t size[2];
-    double* angle;
-    RUGA_TRY(ruga_result_read_optional(j->reader, "/creases/angle", 2, size, &angle));
+    const ruga_result_creases* creases = ruga_result_reader_header(j->reader)->creases;
+    double *last = NULL, *angle = NULL;
     ruga_status status = RUGA_OK;
-    if (angle && size[1] > 0 && size[0] >= (size_t)j->panels->frame_count) {
-        status = add_folds(j, angle, (int)size[1], true);
-        status = status == RUGA_OK ? add_folds(j, angle, (int)size[1], false) : status;
+    if (!creases) {
+        return RUGA_OK;
     }
+    RUGA_TRY_DONE(RUGA_NEW(last, creases->segment_count));
+    RUGA_TRY_DONE(RUGA_NEW(angle, creases->segment_count));
+    RUGA_TRY_DONE(ruga_result_read_creases(j->reader, j->panels->frame_count - 1, last, NULL, NULL));
+    RUGA_TRY_DONE(add_folds(j, true, last, angle));
+    RUGA_TRY_DONE(add_folds(j, false, last, angle));
+done:
+    ruga_release(last);
     ruga_release(angle);
     return status;
 }
 
-static ruga_status add_forces(job* j, const double* force, int handles) {
-    for (int h = 0; h < handles && h < RUGA_PANEL_SERIES; h++) {
-        char name[32];
-        double* y;
-        (void)snprintf(name, sizeof name, "handle %d", h);
-        RUGA_TRY(add_series(j, name, &y));
-        for (int frame = 0; frame < j->panels->frame_count; frame++) {
-            y[frame] = ruga_norm(force + 3 * ((size_t)frame * (size_t)handles + (size_t)h));
-        }
-    }
-    return RUGA_OK;
-}
-
 static ruga_status read_forces(job* j) {
-    size_t size[3];
-    double* force;
-    RUGA_TRY(ruga_result_read_optional(j->reader, "/stats/handle_force", 3, size, &force));
-    ruga_status status = RUGA_OK;
-    if (force && size[1] > 0 && size[2] == 3 && size[0] >= (size_t)j->panels->frame_count) {
-        status = add_forces(j, force, (int)size[1]);
+    int handles = ruga_result_reader_header(j->reader)->handle_count;
+    int shown = handles < RUGA_PANEL_SERIES ? handles : RUGA_PANEL_SERIES;
+    double *y[RUGA_PANEL_SERIES], *force = NULL;
+    ruga_status status = RUGA_NEW(force, 3 * (size_t)handles);
+    for (int h = 0; h < shown && status == RUGA_OK; h++) {
+        char name[32];
+        (void)snprintf(name, sizeof name, "handle %d", h);
+        status = add_series(j, name, &y[h]);
+    }
+    for (int frame = 0; frame < j->panels->frame_count && shown > 0 && status == RUGA_OK; frame++) {
+        status = ruga_result_read_handle_force(j->reader, frame, force);
+        for (int h = 0; h < shown; h++) {
+            y[h][frame] = ruga_norm(force + 3 * (size_t)h);
+        }
     }
     ruga_release(force);
     return status;
@@ -316,7 +314,8 @@ static ruga_status find_kind(const char* key, size_t length, int* kind) {
             *kind = k;
             return RUGA_OK;
         }
-        (void)strcat(strcat(names, k > 0 ? "|" : ""), name);
+        size_t used = strlen(names);
+        (void)snprintf(names + used, sizeof names - used, "%s%s", k > 0 ? "|" : "", name);
     }
     char word[48];
     (void)snprintf(word, sizeof word, "%.*s", (int)(length < 40 ? length : 40), key);
@@ -328,7 +327,7 @@ static ruga_status find_kind(const char* key, size_t length, int* kind) {
 static ruga_status read_named(job* j, const char* what) {
     for (const char* key = what; *key;) {
         size_t length = strcspn(key, ",");
-        int kind;
+        int kind = 0;
         RUGA_TRY(find_kind(key, length, &kind));
         if (j->panels->count >= RUGA_PANELS_MAX) {
             return ruga_fail(RUGA_BAD_INPUT, "--what: at most %d plots on a page", RUGA_PANELS_MAX);

@@ -94,8 +94,9 @@ static ruga_status find_column(const ruga_csv* csv, const char* file, const char
     if (*column >= 0) {
         return RUGA_OK;
     }
-    for (int c = 0; c < csv->column_count && strlen(names) + strlen(csv->name[c]) + 2 < sizeof names; c++) {
-        (void)strcat(strcat(names, c > 0 ? "|" : ""), csv->name[c]);
+    for (int c = 0; c < csv->column_count; c++) {
+        size_t used = strlen(names);
+        (void)snprintf(names + used, sizeof names - used, "%s%s", c > 0 ? "|" : "", csv->name[c]);
     }
     (void)snprintf(word, sizeof word, "%.*s", (int)(length < 40 ? length : 40), name);
     (void)snprintf(sentence, sizeof sentence, "%.120s has no column %s", file, word);

@@ -44,6 +44,7 @@ typedef struct job {
     ruga_state* state;
     ruga_result* result;
     double *restart, *force;
+    double *thickness, *young, *growth, *wavelength; // of the mesh shown, or NULL
     ruga_crease_table creases;
     ruga_meter meter;
     ruga_preview preview;
@@ -158,6 +159,11 @@ static void warn_of_loose_fit(const job* j) {
 
 static ruga_status open_result(job* j) {
     const ruga_model* model = j->model;
+    const ruga_variation* v = &model->variation;
+    RUGA_TRY(ruga_variation_show(model, v->thickness, 1, &j->thickness));
+    RUGA_TRY(ruga_variation_show(model, v->young, 1, &j->young));
+    RUGA_TRY(ruga_variation_show(model, v->growth, 2, &j->growth));
+    RUGA_TRY(ruga_variation_show(model, v->wavelength, 1, &j->wavelength));
     ruga_result_header header = {
         .mesh = ruga_model_shown(model),
         .lattice = model->has_interior ? &model->lattice : NULL,
@@ -171,10 +177,10 @@ static ruga_status open_result(job* j) {
         .cluster_sigma = model->coupling.sigma,
         .cluster_radius = model->coupling.radius,
         .restart_doubles = ruga_state_restart_size(model),
-        .vertex_thickness = model->variation.thickness,
-        .vertex_young = model->variation.young,
-        .vertex_growth = model->variation.growth,
-        .vertex_wavelength = model->variation.wavelength,
+        .vertex_thickness = j->thickness,
+        .vertex_young = j->young,
+        .vertex_growth = j->growth,
+        .vertex_wavelength = j->wavelength,
         .handle_count = model->handle_count,
     };
     RUGA_TRY(ruga_crease_table_create(model, &j->creases));
@@ -327,6 +333,10 @@ static void clear(job* j) {
     ruga_preview_clear(&j->preview);
     ruga_release(j->restart);
     ruga_release(j->force);
+    ruga_release(j->thickness);
+    ruga_release(j->young);
+    ruga_release(j->growth);
+    ruga_release(j->wavelength);
     ruga_crease_table_clear(&j->creases);
     ruga_state_destroy(&j->state);
     ruga_model_destroy(&j->model);

@@ -96,9 +96,5 @@ ruga_status ruga_result_read_lattice(ruga_result_reader* reader, int frame, int*
 // Its nodes at rest [N][3] and its elements [E][nodes_per_element], 27 or 8; each may be NULL.
 ruga_status ruga_result_read_lattice_rest(ruga_result_reader* reader, int* nodes_per_element, int* elements,
                                           double* rest);
-// A dataset that not every result has, of any kind of number: its size[rank], rank <= 3, and its values, to be released
-// by the caller; *values NULL where there is none. RUGA_BAD_INPUT where it has another rank.
-ruga_status ruga_result_read_optional(ruga_result_reader* reader, const char* name, int rank, size_t* size,
-                                      double** values);
 
 #endif

@@ -278,8 +278,10 @@ static const struct {
                    "    stretch: [0.95, 1, 1]\n"
                    "    bump: {center: [0, 0, 10 cm], radius: 5 cm, depth: 1 cm}\n"},
     {"follow",
-     "mesh:   {file: cube.obj, unit: cm}\n"
-     "follow: {file: cube_%d.obj, rate: 25 1/s}   # cube_0.obj, cube_1.obj and so on: how the body moves\n"},
+     "mesh: {file: cube.obj, unit: cm}\n"
+     "follow:\n"
+     "  file: cube_%d.obj           # cube_0.obj, cube_1.obj and so on, or a point cache: cube.pc2\n"
+     "  rate: 25 1/s              # samples in a second\n"},
     {"start", "mesh:     {make: {shape: sheet, size: [20 cm, 12 cm], edge: 5 mm}}\n"
               "skin:     {motion: dynamic}\n"
               "interior: none\n"

@@ -29,9 +29,10 @@ enum { POINTS = RUGA_LATTICE_POINTS, BATCH = 64, ELEMENT_CHUNK = 2, SCATTER_CHUN
 
 static const double STIFFNESS_FLOOR = 1e-3;
 
-// A tile of sums stays in registers over all rows. Each sum runs over rows in order.
-RUGA_WIDE void ruga_plane_accumulate(int count, int width, const double* left, const double* right,
-                                     bool upper, double* plane) {
+// A tile of sums stays in registers over all rows. Each sum runs over rows in order. (Static: what picks the
+// variant would be exported with an external function.)
+RUGA_WIDE static void accumulate(int count, int width, const double* left, const double* right, bool upper,
+                                 double* plane) {
     for (int a = 0; a < width; a += 4) {
         for (int b = upper ? a : 0; b < width; b += 4) {
             double sum[4][4] = {{0}};
@@ -51,6 +52,11 @@ RUGA_WIDE void ruga_plane_accumulate(int count, int width, const double* left, c
             }
         }
     }
+}
+
+void ruga_plane_accumulate(int count, int width, const double* left, const double* right, bool upper,
+                           double* plane) {
+    accumulate(count, width, left, right, upper, plane);
 }
 
 void ruga_plane_mirror(int width, const double* plane, double* mirrored) {

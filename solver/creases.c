@@ -283,9 +283,10 @@ void ruga_creases_set_bending(ruga_creases* c, const ruga_shell_material* materi
         const ruga_segment* segment = &c->cut.segment[c->segment[h]];
         double softness = 0;
         for (int side = 0; side < 2; side++) {
-            const ruga_cut_piece* piece = &c->cut.piece[segment->piece[side]];
+            int p = segment->piece[side];
+            const ruga_cut_piece* piece = &c->cut.piece[p];
             softness += piece->fraction * triangle_area(&c->raster, piece->triangle) /
-                        ruga_shell_material_bending(material, piece->triangle);
+                        ruga_shell_material_bending(material, p);
         }
         c->stiffness[h] = segment->length / softness;
     }

@@ -51,7 +51,7 @@ typedef struct ruga_creases {
 ruga_status ruga_creases_create(int count, const ruga_crease_def* defs, const ruga_mesh* mesh,
                                 const ruga_connectivity* connectivity, ruga_creases** creases);
 void ruga_creases_destroy(ruga_creases** creases);
-// Stiffness of auxiliary chords, from the material of the sheet's triangles.
+// Stiffness of auxiliary chords, from the material of the pieces.
 void ruga_creases_set_bending(ruga_creases* creases, const ruga_shell_material* material);
 // The mesh of nodes and pieces.
 ruga_status ruga_creases_nodes(const ruga_creases* creases, ruga_mesh* nodes);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// The energy of solver/creased.c, or springs (crease/cloth.h) in the place of membrane and bends:
+// The energy of a cut shell, or springs (crease/cloth.h) in the place of membrane and bends:
 //   E = sum over pieces f E_membrane + sum over bends k/2 (theta - theta_b)^2 + sum over hinges k/2 (theta -
 //   theta0)^2,
 // hinges being those of creases and, with the shell, of auxiliary chords. Damping is Kelvin and Voigt's: for

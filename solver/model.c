@@ -134,8 +134,6 @@ static ruga_status check_creases(const ruga_model_def* def) {
         trouble = "solver.method: paper is the published method, which knows no creases";
     } else if (def->has_interior && def->coupling.kind == RUGA_COUPLING_NONE && !def->coupling.foundation) {
         trouble = "with coupling.kind: none and no foundation the skin goes where the interior takes it";
-    } else if (skin->vertex_thickness || skin->vertex_young || skin->vertex_growth) {
-        trouble = "a skin that varies is not available yet together with creases";
     }
     return trouble ? ruga_fail(RUGA_BAD_INPUT, "creases: %s", trouble) : RUGA_OK;
 }
@@ -208,6 +206,7 @@ static ruga_status copy_def(const ruga_model_def* def, ruga_model* model) {
 static ruga_status build_creases(const ruga_model_def* def, ruga_model* model) {
     ruga_mesh nodes = {0};
     RUGA_TRY(ruga_progress("cutting along creases", 0));
+    RUGA_TRY(ruga_variation_carry(&def->skin, &model->mesh));
     RUGA_TRY(ruga_creases_create(def->crease_count, def->creases, &model->mesh, &model->connectivity,
                                  &model->creases));
     RUGA_TRY(ruga_creases_nodes(model->creases, &nodes));
@@ -219,7 +218,10 @@ static ruga_status build_creases(const ruga_model_def* def, ruga_model* model) {
     ruga_release(model->vertex_area);
     RUGA_TRY(RUGA_NEW(model->vertex_area, nodes.vertex_count));
     memcpy(model->vertex_area, model->creases->area, (size_t)nodes.vertex_count * sizeof *model->vertex_area);
-    const ruga_shell_material material = {.skin = model->skin};
+    RUGA_TRY(ruga_variation_create_cut(&def->skin, model));
+    const ruga_shell_material material = {.skin = model->skin,
+                                          .thickness = model->variation.triangle_thickness,
+                                          .young = model->variation.triangle_young};
     ruga_creases_set_bending(model->creases, &material);
     return RUGA_OK;
 }
@@ -574,10 +576,7 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
         model->lattice_def.depth = 0; // the lattice only carries the surface along: one layer will do
     }
     RUGA_TRY_DONE(build_mesh(model));
-    if (def->crease_count > 0) {
-        RUGA_TRY_DONE(build_creases(def, model));
-    }
-    RUGA_TRY_DONE(ruga_variation_create(&def->skin, model));
+    RUGA_TRY_DONE(def->crease_count > 0 ? build_creases(def, model) : ruga_variation_create(&def->skin, model));
     RUGA_TRY_DONE(build_skin_holds(model));
     RUGA_TRY_DONE(build_loads(model));
     if (model->has_interior) {

@@ -78,6 +78,11 @@ struct ruga_model {
 // wavelength, local and all.
 ruga_status ruga_variation_create(const ruga_skin_def* skin, ruga_model* model);
 ruga_status ruga_variation_wavelengths(ruga_model* model);
+// With creases: the arrays go through the cutting as attributes of the mesh, and come out at the nodes.
+ruga_status ruga_variation_carry(const ruga_skin_def* skin, ruga_mesh* mesh);
+ruga_status ruga_variation_create_cut(const ruga_skin_def* skin, ruga_model* model);
+// Values of what moves, [nodes][components] or NULL, at the vertices that are shown: *shown is the caller's.
+ruga_status ruga_variation_show(const ruga_model* model, const double* values, int components, double** shown);
 void ruga_variation_clear(ruga_variation* variation);
 
 // The least reference force, N: 1e-8 E h times the mean edge, and never so small that the tolerance would be

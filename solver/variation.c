@@ -82,16 +82,20 @@ static ruga_status take(const ruga_model* model, const double* values, const cha
     return RUGA_OK;
 }
 
+static ruga_status check_count(const ruga_skin_def* skin, const ruga_mesh* mesh) {
+    bool any = skin->vertex_thickness || skin->vertex_young || skin->vertex_growth;
+    return !any || skin->vertex_count == mesh->vertex_count
+               ? RUGA_OK
+               : ruga_fail(
+                     RUGA_BAD_INPUT,
+                     "skin.vertex_count is %d, but the mesh has %d vertices: give one value for each of them",
+                     skin->vertex_count, mesh->vertex_count);
+}
+
 ruga_status ruga_variation_create(const ruga_skin_def* skin, ruga_model* model) {
     ruga_variation* v = &model->variation;
     ruga_skin_def* single = &model->skin;
-    bool any = skin->vertex_thickness || skin->vertex_young || skin->vertex_growth;
-    if (any && skin->vertex_count != model->mesh.vertex_count) {
-        return ruga_fail(
-            RUGA_BAD_INPUT,
-            "skin.vertex_count is %d, but the mesh has %d vertices: give one value for each of them",
-            skin->vertex_count, model->mesh.vertex_count);
-    }
+    RUGA_TRY(check_count(skin, &model->mesh));
     RUGA_TRY(take(model, skin->vertex_thickness, "vertex_thickness", 1, &single->thickness, &v->thickness,
                   &v->triangle_thickness));
     RUGA_TRY(
@@ -102,6 +106,104 @@ ruga_status ruga_variation_create(const ruga_skin_def* skin, ruga_model* model) 
     single->vertex_count = 0;
     return RUGA_OK;
 }
+
+// ---- on a mesh that is cut -----------------------------------------------------------------------------
+
+enum { COLUMNS = 4 }; // thickness, Young's modulus, growth along and across
+
+// The array that a column is in, and how far apart its values are there.
+static const double* column_of(const ruga_skin_def* skin, int column, int* stride) {
+    *stride = column < 2 ? 1 : 2;
+    return column == 0   ? skin->vertex_thickness
+           : column == 1 ? skin->vertex_young
+           : column == 2 ? skin->vertex_growth
+           : skin->vertex_growth ? skin->vertex_growth + 1
+                                 : NULL;
+}
+
+ruga_status ruga_variation_carry(const ruga_skin_def* skin, ruga_mesh* mesh) {
+    int count = 0, stride;
+    RUGA_TRY(check_count(skin, mesh));
+    RUGA_ASSERT(mesh->attribute_count == 0);
+    for (int c = 0; c < COLUMNS; c++) {
+        count += column_of(skin, c, &stride) != NULL;
+    }
+    if (count == 0) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(RUGA_NEW_ZERO(mesh->attribute_name, count));
+    mesh->attribute_count = count;
+    RUGA_TRY(RUGA_NEW(mesh->attribute, (size_t)count * (size_t)mesh->vertex_count));
+    for (int c = 0, out = 0; c < COLUMNS; c++) {
+        const double* values = column_of(skin, c, &stride);
+        if (!values) {
+            continue;
+        }
+        mesh->attribute_name[out] = ruga_copy_string("skin");
+        if (!mesh->attribute_name[out]) {
+            return ruga_fail(RUGA_NO_MEMORY, "out of memory: the skin's values");
+        }
+        for (int v = 0; v < mesh->vertex_count; v++) {
+            mesh->attribute[count * v + out] = values[stride * v];
+        }
+        out++;
+    }
+    return RUGA_OK;
+}
+
+ruga_status ruga_variation_create_cut(const ruga_skin_def* skin, ruga_model* model) {
+    ruga_status status = RUGA_OK;
+    const ruga_cut* cut = &model->creases->cut;
+    const ruga_mesh* sheet = model->sheet;
+    int nodes = cut->node_count, stride;
+    double* values[3] = {NULL, NULL, NULL};
+    ruga_skin_def own = *skin;
+    for (int c = 0, in = 0; c < COLUMNS; c++) {
+        if (!column_of(skin, c, &stride)) {
+            continue;
+        }
+        double** array = &values[c < 2 ? c : 2];
+        if (!*array) {
+            RUGA_TRY_DONE(RUGA_NEW(*array, (size_t)stride * (size_t)nodes));
+        }
+        for (int n = 0; n < nodes; n++) {
+            (*array)[stride * n + (c == 3)] = sheet->attribute[sheet->attribute_count * cut->source[n] + in];
+        }
+        in++;
+    }
+    own.vertex_count = nodes;
+    own.vertex_thickness = values[0];
+    own.vertex_young = values[1];
+    own.vertex_growth = values[2];
+    RUGA_TRY_DONE(ruga_variation_create(&own, model));
+done:
+    for (int i = 0; i < 3; i++) {
+        ruga_release(values[i]);
+    }
+    return status;
+}
+
+ruga_status ruga_variation_show(const ruga_model* model, const double* values, int components, double** shown) {
+    const ruga_creases* creases = model->creases;
+    int vertices = ruga_model_shown(model)->vertex_count, real = creases ? creases->cut.real_count : vertices;
+    *shown = NULL;
+    if (!values) {
+        return RUGA_OK;
+    }
+    RUGA_TRY(RUGA_NEW(*shown, (size_t)components * (size_t)vertices));
+    memcpy(*shown, values, (size_t)components * (size_t)real * sizeof *values);
+    for (int v = real; v < vertices; v++) {
+        const ruga_bound* bound = &creases->cut.bound[v - real];
+        const int* end = creases->raster.edges.edge[bound->edge];
+        for (int c = 0; c < components; c++) {
+            (*shown)[components * v + c] =
+                bound->weight[0] * values[components * end[0] + c] + bound->weight[1] * values[components * end[1] + c];
+        }
+    }
+    return RUGA_OK;
+}
+
+// ---- wavelengths ---------------------------------------------------------------------------------------
 
 static ruga_skin_def skin_of(const ruga_model* model, const double* thickness, const double* young, int i) {
     ruga_skin_def skin = model->skin;
@@ -114,7 +216,7 @@ static ruga_skin_def skin_of(const ruga_model* model, const double* thickness, c
 static void find_worst_edges(ruga_model* model) {
     const ruga_connectivity* c = &model->connectivity;
     model->edges = INFINITY;
-    for (int v = 0; v < model->mesh.vertex_count; v++) {
+    for (int v = 0; v < c->vertex_count; v++) { // of the sheet, which are the first nodes
         const double* x = model->mesh.position + 3 * (size_t)v;
         int begin = c->neighbour_start[v], end = c->neighbour_start[v + 1];
         double length = 0, lambda = model->variation.wavelength[v];

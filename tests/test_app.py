@@ -6,6 +6,7 @@
 import csv
 import glob
 import json
+import math
 import os
 import random
 import re
@@ -45,6 +46,23 @@ gravity:  [0, 0, -9.81]
 handles:
   - {region: {plane: {center: [-6 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}
   - {region: {plane: {center: [6 cm, 0, 0], normal: [1, 0, 0]}}, move: {translate: [-6 mm, 0, 0]}, during: [0 s, 80 ms]}
+"""
+
+
+# A square of paper with two creases that cross, folded from flat by the pattern's angles.
+FOLDED = """\
+mesh:     {file: cross.fold, scale: 0.1, remesh: {edge: 12 mm}}
+skin:     {thickness: 0.3 mm, young: 1 GPa}
+interior: none
+creases:
+  - curve: {fold: cross.fold}
+    hinge: {stiffness: 0.02 N, rest: assigned, yield: 60 deg, animate: [{time: 0 s, scale: 0}, {time: 0.2 s, scale: 0.9}]}
+time:     {step: 20 ms, frames: 10}
+"""
+CROSS = """\
+{"vertices_coords": [[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]],
+ "edges_vertices": [[0, 4], [4, 1], [1, 5], [5, 2], [2, 6], [6, 3], [3, 7], [7, 0], [4, 8], [5, 8], [6, 8], [7, 8]],
+ "edges_assignment": ["B", "B", "B", "B", "B", "B", "B", "B", "M", "V", "V", "V"]}
 """
 
 
@@ -371,6 +389,36 @@ class Runs(Case):
         scene = self.write("coupled.yaml", COUPLED)
         self.ruga("run", scene, "-o", "coupled.h5")
         self.kill_and_resume(scene, 10, self.path("coupled.h5"))
+
+    def test_creases_from_a_pattern(self):
+        self.write("cross.fold", CROSS)
+        scene = self.write("folded.yaml", FOLDED)
+        facts = self.json("explain", scene)
+        self.assertEqual(facts["creases"]["curves"], 4)
+        self.assertGreater(facts["creases"]["pieces"], facts["creases"]["triangles"])
+        self.assertIn("freedom full: it meets another", self.ruga("explain", scene).stdout)
+        self.ruga("run", scene, "-o", "folded.h5")
+        self.assertEqual(self.json("measure", "folded.h5")["outcome"], "minimum")
+        self.ruga("export", "folded.h5", "--format", "obj", "-o", "folded.obj")
+        shown = self.json("check", "folded.obj", "--as", "shell")
+        self.assertEqual((shown["vertices"], shown["triangles"]), (facts["vertices"], facts["triangles"]))
+        self.kill_and_resume(scene, 6, self.path("folded.h5"))
+        if h5py:
+            with h5py.File(self.path("folded.h5"), "r") as file:
+                creases = file["creases"]
+                self.assertEqual(creases["names"].asstr()[0], "cross.fold edge 8")
+                self.assertEqual(sorted(set(bytes(creases["assignment"][()]).decode())), ["M", "V"])
+                self.assertAlmostEqual(sum(creases["length"][()]), 0.2, delta=1e-12)
+                self.assertLess(max(creases["gap"][()]), 1e-14)
+                signs = [1 if letter == ord("V") else -1 for letter in creases["assignment"][()]]
+                for sign, angle in zip(signs, creases["angle"][10]):
+                    self.assertGreater(sign * angle, 0.9 * 162 * math.pi / 180)
+                rest = file["mesh/rest"][()]
+                for (a, b), length in zip(creases["segments"][()], creases["length"][()]):
+                    self.assertAlmostEqual(math.dist(rest[a], rest[b]), length, delta=1e-15)
+        self.ruga("run", scene, "-o", "other.h5", "--frames", 2, "--threads", 1)
+        self.refused("run", scene, "-o", "other.h5", "--resume", "--set", "creases.0.hinge.scale=0.5", saying="scene")
+        self.refused("run", scene, "-o", "none.h5", "--set", "skin.motion=dynamic", saying="not available yet")
 
     def test_same_bits_for_any_number_of_threads(self):
         first = self.run_scene("0.h5", "--threads", 1, "--frames", 6)

@@ -184,6 +184,47 @@ static void a_cut_changes_neither_mass_nor_loads_nor_stiffness(void** state) {
     scene_free(&s[1]);
 }
 
+// A thickness that varies goes through the cutting: linear fields stay linear, and the mass is what it was.
+static void a_skin_that_varies_may_be_creased(void** state) {
+    (void)state;
+    small_scene s[2];
+    const ruga_crease_def creases[2] = {crease_line(across, 0), crease_line(along, 0)};
+    double mass[2] = {0}, *thickness = NULL, *growth = NULL, *shown;
+    for (int k = 0; k < 2; k++) {
+        make_paper(&s[k], k ? 2 : 0, creases);
+        int vertices = s[k].mesh.vertex_count;
+        thickness = scene_array(vertices);
+        growth = scene_array(2 * vertices);
+        for (int v = 0; v < vertices; v++) {
+            thickness[v] = 1e-3 + 2e-3 * s[k].mesh.position[3 * v];
+            growth[2 * v] = 1 + 0.1 * s[k].mesh.position[3 * v + 1];
+            growth[2 * v + 1] = 1;
+        }
+        s[k].def.skin.vertex_count = vertices;
+        s[k].def.skin.vertex_thickness = thickness;
+        s[k].def.skin.vertex_growth = growth;
+        scene_build(&s[k]);
+        for (int n = 0; n < s[k].model->mesh.vertex_count; n++) {
+            const double* x = s[k].model->mesh.position + 3 * n;
+            mass[k] += s[k].state->skin->mass[n];
+            assert_near(s[k].model->variation.thickness[n], 1e-3 + 2e-3 * x[0], 1e-15);
+            assert_near(s[k].model->variation.growth[2 * n], 1 + 0.1 * x[1], 1e-13);
+        }
+        free(thickness);
+        free(growth);
+    }
+    assert_near(mass[1], mass[0],
+                1e-4 * mass[0]); // triangles have the mean of their corners, and vertices moved
+    assert_ok(ruga_variation_show(s[1].model, s[1].model->variation.thickness, 1, &shown));
+    const ruga_mesh* mesh = ruga_model_shown(s[1].model);
+    for (int v = 0; v < mesh->vertex_count; v++) {
+        assert_near(shown[v], 1e-3 + 2e-3 * mesh->position[3 * v], 1e-15);
+    }
+    ruga_release(shown);
+    scene_free(&s[0]);
+    scene_free(&s[1]);
+}
+
 // ---- folding -------------------------------------------------------------------------------------------
 
 static void keyframes_fold_to_their_angle(void** state) {
@@ -432,6 +473,12 @@ static void each_allocation_may_fail(void** state) {
     s.def.crease_count = 2;
     s.def.creases = creases;
     s.def.handle_count = 1;
+    double* thickness = scene_array(s.mesh.vertex_count);
+    for (int v = 0; v < s.mesh.vertex_count; v++) {
+        thickness[v] = 1e-3 + 1e-5 * v;
+    }
+    s.def.skin.vertex_count = s.mesh.vertex_count;
+    s.def.skin.vertex_thickness = thickness;
     for (int k = 0;; k++) {
         allowed = k;
         ruga_set_allocator(scene_allocate_while_allowed, scene_release_block, &allowed);
@@ -445,6 +492,7 @@ static void each_allocation_may_fail(void** state) {
         }
         assert_int_equal(status, RUGA_NO_MEMORY);
     }
+    free(thickness);
     ruga_mesh_clear(&s.mesh);
 }
 
@@ -572,6 +620,7 @@ int main(void) {
         cmocka_unit_test(derivatives_are_right_with_creases_pressure_and_gravity),
         cmocka_unit_test(derivatives_are_right_on_a_foundation),
         cmocka_unit_test(a_cut_changes_neither_mass_nor_loads_nor_stiffness),
+        cmocka_unit_test(a_skin_that_varies_may_be_creased),
         cmocka_unit_test(keyframes_fold_to_their_angle),
         cmocka_unit_test(angles_are_followed_through_180_degrees),
         cmocka_unit_test(values_vary_along_a_crease),

@@ -4,7 +4,8 @@
 #include "tests/miura.h"
 #include "tests/scarce_memory.h"
 
-#include "solver/creased.h"
+#include "tests/creased.h"
+#include "tests/small_scene.h"
 #include "solver/stitch.h"
 
 typedef struct panel {
@@ -600,10 +601,83 @@ static void every_failed_allocation_is_a_status(void** state) {
     clear_panel(&p);
 }
 
+// The skin's solve (solver/skin.c) on the same cut: a crease whose rest angle varies along it, so that panels bend. What
+// differs by itself is that its hinges of whole edges follow the thickness of a strained skin, here by strains of 1e-4.
+static void the_skin_s_solve_finds_the_same_state(void** state) {
+    (void)state;
+    panel p = {.def = ruga_default_creased_def()};
+    const double line[6] = {3.4, 0, 0, 3.4, 4, 0}, rest[2] = {0.2, 0.6};
+    ruga_crease_def crease = ruga_default_crease_def();
+    ruga_model_def def = ruga_default_model_def();
+    ruga_handle_def handle = ruga_default_handle_def();
+    ruga_model* model = NULL;
+    ruga_state* one = NULL;
+    ruga_report report;
+    make_squares(8, 4, true, &p.c.mesh);
+    def.mesh = ruga_mesh_as_def(&p.c.mesh);
+    def.has_interior = false;
+    def.skin.thickness = 0.05;
+    def.skin.young = 1e9;
+    def.solver.tolerance = 1e-9;
+    crease.points = line;
+    crease.point_count = 2;
+    crease.point_rest = rest;
+    crease.stiffness = 20000;
+    def.crease_count = def.handle_count = 1;
+    def.creases = &crease;
+    def.handles = &handle;
+    handle.region.kind = RUGA_REGION_BOX;
+    handle.region.max[0] = 1;
+    handle.region.max[1] = 4;
+    assert_ok(ruga_model_create(&def, &model));
+    assert_ok(ruga_state_create(model, &one));
+    assert_ok(ruga_state_step(model, one, &report));
+    assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+    const ruga_creases* c = model->creases;
+    int nodes = c->cut.node_count, segments = c->cut.segment_count;
+    p.x = scene_copy(3 * nodes, model->mesh.position);
+    p.stiffness = scene_array(segments);
+    p.rest = scene_array(segments);
+    p.fixed = calloc((size_t)nodes, sizeof *p.fixed);
+    for (int h = 0; h < c->segment_count; h++) {
+        p.stiffness[c->segment[h]] = c->stiffness[h];
+    }
+    for (int n = 0; n < nodes; n++) {
+        p.fixed[n] = model->skin_handle[3 * n] >= 0;
+    }
+    p.def.raster = &c->raster;
+    p.def.cut = &c->cut;
+    p.def.skin = def.skin;
+    p.def.stiffness = p.stiffness;
+    p.def.fixed = p.fixed;
+    ruga_creased_report own;
+    assert_ok(ruga_creased_create(&p.def, &p.creased));
+    for (int part = 1; part <= 4; part++) {
+        for (int h = 0; h < c->segment_count; h++) {
+            p.rest[c->segment[h]] = c->rest[h] * part / 4;
+        }
+        assert_ok(ruga_creased_solve(p.creased, p.rest, p.x, &own));
+    }
+    assert_int_equal(own.outcome, RUGA_OUTCOME_MINIMUM);
+    double away = 0, moved = 0;
+    for (int n = 0; n < nodes; n++) {
+        away = fmax(away, ruga_distance(p.x + 3 * n, one->x + 3 * n));
+        moved = fmax(moved, ruga_distance(model->mesh.position + 3 * n, one->x + 3 * n));
+    }
+    print_message("apart by %.2g of %.2g m; energies %.8g %.8g, %.8g %.8g, %.8g %.8g\n", away, moved, own.membrane,
+                  report.energy_membrane, own.bending, report.energy_bending, own.hinge, report.energy_hinge);
+    assert_true(moved > 1 && away < 1e-4 * moved);
+    assert_near(report.energy_hinge, own.hinge, 1e-4 * own.hinge);
+    ruga_state_destroy(&one);
+    ruga_model_destroy(&model);
+    clear_panel(&p);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_free_hinge_hangs_straight_down),
         cmocka_unit_test(a_spring_hinge_balances_the_weight_of_a_stiff_panel),
+        cmocka_unit_test(the_skin_s_solve_finds_the_same_state),
         cmocka_unit_test(a_solution_is_kept),
         cmocka_unit_test(projecting_after_the_step_would_leave_the_solution),
         cmocka_unit_test(a_kinked_crease_locks_but_for_auxiliary_chords),

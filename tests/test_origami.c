@@ -8,7 +8,7 @@
 
 #include "io/fold.h"
 #include "mesh/remesh.h"
-#include "solver/creased.h"
+#include "tests/creased.h"
 
 typedef struct origami {
     ruga_crease_pattern pattern;

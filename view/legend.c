@@ -93,7 +93,7 @@ static void draw_colors(ruga_canvas* canvas, const ruga_legend* legend) {
     const ruga_scale* scale = legend->scale;
     double unit = scale->unit > 0 ? scale->unit : 1, range = scale->max - scale->min;
     cairo_set_antialias(canvas->cairo, CAIRO_ANTIALIAS_NONE);
-    for (double x = floor(legend->left); x < legend->right; x += 1) {
+    for (int x = (int)legend->left; x < legend->right; x++) {
         double rgb[3], part = (x + 0.5 - legend->left) / (legend->right - legend->left);
         double value = unit * ruga_axis_value(&legend->axis, part);
         ruga_colormap(scale->map, range > 0 ? (value - scale->min) / range : 0.5, rgb);

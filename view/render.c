@@ -95,8 +95,8 @@ static void set_camera(scene* s) {
     ruga_add_scaled(c->ground - ruga_dot(s->middle, c->axis), c->axis, s->middle);
 }
 
-// From the left and low enough to graze the wrinkles; from below where the camera looks from under the floor.
-// Values are shown under white light.
+// From the left and low enough to graze the wrinkles; more from the front where the camera stands low, and from
+// below where it looks from under the floor. Values are shown under white light.
 static void set_lights(scene* s) {
     static const double warm[3] = {3.1, 2.9, 2.65}, cool[3] = {0.66, 0.70, 0.76},
                         neutral[3] = {2.9, 2.9, 2.9}, grey[3] = {0.9, 0.9, 0.9},
@@ -104,9 +104,10 @@ static void set_lights(scene* s) {
     const ruga_camera* c = &s->camera;
     bool values = s->def->scalar.value || s->def->place || s->def->lines.value;
     double right = ruga_norm(c->right), sign = ruga_dot(c->eye, c->axis) < c->ground ? -1 : 1;
+    double from_behind = fmin(1.2 * sign * -ruga_dot(c->forward, c->axis) - 0.5, 0.2);
     for (int k = 0; k < 3; k++) {
         s->zenith[k] = sign * c->axis[k];
-        s->key[k] = -0.85 * c->right[k] / right + 0.45 * s->zenith[k] + 0.2 * c->forward[k];
+        s->key[k] = -0.85 * c->right[k] / right + 0.45 * s->zenith[k] + from_behind * c->forward[k];
     }
     (void)ruga_normalize(s->key);
     memcpy(s->key_color, values ? neutral : warm, sizeof warm);

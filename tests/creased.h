@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// Static equilibria of a free shell with creases: membrane and hinges of all copies, the sewing as exact
-// rows.
-#ifndef RUGA_SOLVER_CREASED_H
-#define RUGA_SOLVER_CREASED_H
+// Static equilibria of a free shell with creases by the plainest means: membrane and hinges of all copies, the sewing as
+// exact rows, Newton's method. Written apart from the skin's solve, against which tests hold it.
+#ifndef RUGA_TESTS_CREASED_H
+#define RUGA_TESTS_CREASED_H
 
 #include "crease/hinge.h"
 #include "crease/sewing.h"

@@ -13,7 +13,7 @@
 // inertia is that of a minimum on the null space of the rows, 3 rows negative pivots; otherwise the
 // semi-definite one with a shift that grows until the inertia is right. Steps are capped at half an edge, and
 // shortened by Armijo's rule.
-#include "solver/creased.h"
+#include "tests/creased.h"
 
 #include "core/memory.h"
 #include "core/vec3.h"
