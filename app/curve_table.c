@@ -24,7 +24,7 @@ static void write_head(ruga_writer* w, int handles) {
 }
 
 static void write_number(ruga_writer* w, double value) {
-    (void)fprintf(w->file, ",%.9g", value);
+    (void)(isfinite(value) ? fprintf(w->file, ",%.9g", value) : fputs(",", w->file));
 }
 
 static ruga_status write_row(ruga_writer* w, table* t, int frame) {

@@ -18,6 +18,7 @@ static const double redraw_interval = 0.1; // s
 const char* ruga_outcome_name(ruga_outcome outcome) {
     return outcome == RUGA_OUTCOME_MINIMUM  ? "minimum"
            : outcome == RUGA_OUTCOME_SADDLE ? "saddle"
+           : outcome == RUGA_OUTCOME_MOTION ? "in motion"
                                             : "not converged";
 }
 

@@ -34,7 +34,7 @@ static const ruga_option options[] = {
     {0},
 };
 
-enum { FRAMES_MAX = 10000000, THREADS_MAX = 1024, OUTCOMES = 3 };
+enum { FRAMES_MAX = 10000000, THREADS_MAX = 1024, OUTCOMES = 4 };
 
 typedef struct job {
     const ruga_arguments* arguments;
@@ -295,15 +295,17 @@ static ruga_status tell_summary(const job* j) {
     double seconds = ruga_clock() - j->begin;
     const int* o = j->outcomes;
     if (ruga_given(j->arguments, "--json")) {
-        return ruga_print_json(json_pack("{s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:o}", "result", j->path,
+        return ruga_print_json(json_pack("{s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o}", "result", j->path,
                                          "frames", j->whole, "minimum", o[0], "saddle", o[1], "not_converged",
-                                         o[2], "frames_split", j->split_frames, "substeps", j->substeps,
-                                         "seconds", ruga_json_number(seconds)));
+                                         o[2], "in_motion", o[3], "frames_split", j->split_frames, "substeps",
+                                         j->substeps, "seconds", ruga_json_number(seconds)));
     }
     char duration[32];
     ruga_duration(seconds, duration);
     ruga_say(j->arguments, "%s: frames 0 to %d in %s\n", j->path, j->whole, duration);
-    ruga_say(j->arguments, "    %d in a minimum, %d on a saddle, %d not converged\n", o[0], o[1], o[2]);
+    if (o[3] == 0) {
+        ruga_say(j->arguments, "    %d in a minimum, %d on a saddle, %d not converged\n", o[0], o[1], o[2]);
+    }
     if (j->split_frames > 0) {
         ruga_say(j->arguments, "    steps split: %d frames, %d substeps in all\n", j->split_frames,
                  j->substeps);

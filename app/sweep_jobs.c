@@ -68,7 +68,7 @@ static ruga_status read_result(ruga_sweep_point* point, bool* complete) {
         ruga_report report;
         RUGA_TRY_DONE(ruga_result_read_frame(reader, k, NULL, NULL, NULL, &report));
         seconds += report.seconds_total;
-        bad += report.outcome != RUGA_OUTCOME_MINIMUM;
+        bad += report.outcome == RUGA_OUTCOME_SADDLE || report.outcome == RUGA_OUTCOME_NOT_CONVERGED;
     }
     RUGA_TRY_DONE(ruga_measurement_take(reader, frames - 1, &m));
     json_t* measured = ruga_measurement_json(&m);

@@ -66,7 +66,7 @@ bool ruga_result_get_report(const hid_t* sets, hsize_t row, ruga_report* report)
         return false;
     }
     // A value that a later version may know is not taken for success.
-    report->outcome = outcome == RUGA_OUTCOME_MINIMUM || outcome == RUGA_OUTCOME_SADDLE
+    report->outcome = outcome >= RUGA_OUTCOME_MINIMUM && outcome <= RUGA_OUTCOME_MOTION
                           ? (ruga_outcome)outcome
                           : RUGA_OUTCOME_NOT_CONVERGED;
     return true;

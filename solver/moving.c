@@ -226,6 +226,7 @@ static void put_energies(const ruga_moving* m, double time, const double* x, con
         report->energy_external -= mass[n] * ruga_dot(m->model->gravity, x + 3 * (size_t)n);
         report->energy_kinetic += 0.5 * mass[n] * ruga_dot(v, v);
     }
+    report->outcome = RUGA_OUTCOME_MOTION;
     report->energy_membrane = e->membrane;
     report->energy_bending = e->bending;
     report->energy_hinge = e->hinges;

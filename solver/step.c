@@ -102,9 +102,19 @@ void ruga_state_destroy(ruga_state** state_pointer) {
     ruga_moving_destroy(&state->moving);
     ruga_skin_destroy(&state->skin);
     ruga_volume_solver_destroy(&state->volume);
-    void* const owned[] = {state->x,     state->embedded,      state->q,      state->v,     state->old_q,
-                           state->old_x, state->next_embedded, state->anchor, state->strain,
-                           state->deviation, state->displacement,  state->shown,  state->shown_embedded};
+    void* const owned[] = {state->x,
+                           state->embedded,
+                           state->q,
+                           state->v,
+                           state->old_q,
+                           state->old_x,
+                           state->next_embedded,
+                           state->anchor,
+                           state->strain,
+                           state->deviation,
+                           state->displacement,
+                           state->shown,
+                           state->shown_embedded};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
         ruga_release(owned[i]);
     }
@@ -141,7 +151,10 @@ double ruga_state_gap(const ruga_state* state) {
 }
 
 ruga_status ruga_state_handle_forces(ruga_state* state, double* force) {
-    return ruga_skin_handle_forces(state->skin, state->x, force);
+    for (int i = 0; i < 3 * state->model->handle_count && state->moving; i++) {
+        force[i] = NAN; // seams and damping push, too, in impulses that no one sums
+    }
+    return state->moving ? RUGA_OK : ruga_skin_handle_forces(state->skin, state->x, force);
 }
 
 const double* ruga_state_lattice(const ruga_state* state) {
@@ -154,7 +167,8 @@ enum { RESTART_SCALARS = 5 }; // frame, time, shift memory, proximal factor, whe
 
 int ruga_state_restart_size(const ruga_model* model) {
     return RESTART_SCALARS + 3 * model->mesh.vertex_count + 6 * model->lattice.node_count +
-           3 * model->dense.volume.node_count + ruga_hinges_restart_size(model->creases) + ruga_moving_restart_size(model);
+           3 * model->dense.volume.node_count + ruga_hinges_restart_size(model->creases) +
+           ruga_moving_restart_size(model);
 }
 
 void ruga_state_save(const ruga_state* state, double* restart) {
@@ -351,8 +365,8 @@ static ruga_status solve_volume(ruga_state* state, ruga_report* report) {
         stretch[i] = (b[i] - a[i]) / (Y[i] - X[i]);
         shift[i] = a[i] - stretch[i] * X[i];
     }
-    RUGA_TRY(ruga_dense_solve(&model->dense, state->volume, stretch, shift, model->solver.tolerance, state->deviation,
-                              state->displacement, &result));
+    RUGA_TRY(ruga_dense_solve(&model->dense, state->volume, stretch, shift, model->solver.tolerance,
+                              state->deviation, state->displacement, &result));
     ruga_dense_surface(&model->dense, &model->mesh, state->displacement, state->x);
     state->skin->work.iterations += result.iterations;
     state->skin->work.factorizations += result.factorizations;
@@ -588,8 +602,8 @@ static ruga_status step_part(ruga_state* state, double dt, ruga_report* report) 
     return RUGA_OK;
 }
 
-// The whole step is predicted first, with the skin following: what that would do to the surface tells how many parts
-// the step needs.
+// The whole step is predicted first, with the skin following: what that would do to the surface tells how
+// many parts the step needs.
 static ruga_status step_coupled(ruga_state* state, ruga_report* report) {
     double begin = state->time, dt = state->model->step;
     int parts = 1, folds = begin_hinges(state);

@@ -84,8 +84,8 @@ typedef struct ruga_keyframe_def {
     double bump_direction[3]; // need not be of unit length
 } ruga_keyframe_def;
 
-// A moving surface that the interior follows in place of keyframes. The samples are asked for in order while a model is
-// created; another status than RUGA_OK ends that.
+// A moving surface that the interior follows in place of keyframes. The samples are asked for in order while
+// a model is created; another status than RUGA_OK ends that.
 typedef ruga_status ruga_sample_function(int sample, double* positions, void* context);
 typedef struct ruga_motion_def {
     int sample_count;           // 0 = none
@@ -119,8 +119,9 @@ typedef enum ruga_method {
 } ruga_method;
 typedef enum ruga_linear_kind { RUGA_LINEAR_DIRECT, RUGA_LINEAR_MINRES } ruga_linear_kind;
 
-// RUGA_SKIN_VOLUME: no shell, but thin stiff elements of a volume that is fine throughout, on top of a box; the
-// interior must be prescribed by stretches along the axes. RUGA_SKIN_SPRINGS: cloth of springs, in dynamic motion.
+// RUGA_SKIN_VOLUME: no shell, but thin stiff elements of a volume that is fine throughout, on top of a box;
+// the interior must be prescribed by stretches along the axes. RUGA_SKIN_SPRINGS: cloth of springs, in
+// dynamic motion.
 typedef enum ruga_skin_model { RUGA_SKIN_SHELL, RUGA_SKIN_SPRINGS, RUGA_SKIN_VOLUME } ruga_skin_model;
 
 typedef struct ruga_skin_def {
@@ -134,8 +135,8 @@ typedef struct ruga_skin_def {
     double growth[2]; // rest lengths along and across the skin's first direction are multiplied by these
     ruga_skin_motion motion;
     double relaxation; // s, for damped motion
-    double damping;    // s, >= 0, for dynamic motion: viscous stress over the elastic stress of the strain rate
-    double drag;       // 1/s, >= 0, for dynamic motion: M drag v
+    double damping; // s, >= 0, for dynamic motion: viscous stress over the elastic stress of the strain rate
+    double drag;    // 1/s, >= 0, for dynamic motion: M drag v
     // A skin that varies: values at the mesh's vertices, linear between them, in place of those above; NULL =
     // as above.
     int vertex_count;               // of each array given: the mesh's
@@ -195,15 +196,16 @@ typedef enum ruga_crease_path {
     RUGA_CREASE_GROUP,    // the border of a group of faces
 } ruga_crease_path;
 
-// The rest angle is angle + scale times the crease's `rest` (or point_rest); linear between keys, held outside.
+// The rest angle is angle + scale times the crease's `rest` (or point_rest); linear between keys, held
+// outside.
 typedef struct ruga_crease_key {
     double time;  // s, above that of the key before
     double angle; // rad
     double scale;
 } ruga_crease_key;
 
-// One crease curve, or those around a group, with its hinge: k l / 2 (theta - rest)^2 for each length l of it.
-// theta is 0 when flat and positive for a valley: both sides turn to where their normals point.
+// One crease curve, or those around a group, with its hinge: k l / 2 (theta - rest)^2 for each length l of
+// it. theta is 0 when flat and positive for a valley: both sides turn to where their normals point.
 typedef struct ruga_crease_def {
     const char* name; // where it comes from, for messages and results; may be NULL
     ruga_crease_path path;
@@ -215,23 +217,26 @@ typedef struct ruga_crease_def {
     const char* group;
     ruga_crease_kind kind; // a cut has no hinge
     ruga_crease_freedom freedom;
-    double start;                  // s, in dynamic motion: until then it bends like the material beside it; <= 0: always
-    char assignment;               // 'M', 'V', 'F', 'U', 'C' as in FOLD; carried along
-    double stiffness;              // N m/rad per m = N, >= 0
-    double rest;                   // rad
-    const double* point_stiffness; // [point_count or vertex_count] in place of it, linear along the curve; or NULL
-    const double* point_rest;      // likewise
-    int key_count;                 // 0: the rest angle stays as it is
+    double start;     // s, in dynamic motion: until then it bends like the material beside it; <= 0: always
+    char assignment;  // 'M', 'V', 'F', 'U', 'C' as in FOLD; carried along
+    double stiffness; // N m/rad per m = N, >= 0
+    double rest;      // rad
+    const double*
+        point_stiffness;      // [point_count or vertex_count] in place of it, linear along the curve; or NULL
+    const double* point_rest; // likewise
+    int key_count;            // 0: the rest angle stays as it is
     const ruga_crease_key* keys;
-    double yield;                  // rad, >= 0: beyond it the rest angle follows; INFINITY = never
-    double rate;                   // 1/s, > 0: how fast; INFINITY = at once
-    double hardening;              // >= 0: growth of the yield angle for each rad of plastic turning
+    double yield;     // rad, >= 0: beyond it the rest angle follows; INFINITY = never
+    double rate;      // 1/s, > 0: how fast; INFINITY = at once
+    double hardening; // >= 0: growth of the yield angle for each rad of plastic turning
 } ruga_crease_def;
 
-// How a skin in dynamic motion begins: folded flat panels, then rolled, with a velocity where nothing holds it.
+// How a skin in dynamic motion begins: folded flat panels, then rolled, with a velocity where nothing holds
+// it.
 typedef struct ruga_start_def {
-    double fold;        // part of the creases' rest angles at time 0 by which panels are turned; 0 = as the mesh is
-    double cone;        // rad: a sector of the plane z = 0 about the origin, of this angle, closes to a cone; 0 = none
+    double fold; // part of the creases' rest angles at time 0 by which panels are turned; 0 = as the mesh is
+    double
+        cone; // rad: a sector of the plane z = 0 about the origin, of this angle, closes to a cone; 0 = none
     double velocity[3]; // m/s
 } ruga_start_def;
 
@@ -266,9 +271,10 @@ RUGA_API ruga_keyframe_def ruga_default_keyframe_def(void);
 RUGA_API ruga_crease_def ruga_default_crease_def(void);
 
 typedef enum ruga_outcome {
-    RUGA_OUTCOME_MINIMUM = 0,      // converged, certified by the inertia
-    RUGA_OUTCOME_SADDLE = 1,       // residual small, but a direction of negative curvature is left
-    RUGA_OUTCOME_NOT_CONVERGED = 2 // the residual is above the tolerance
+    RUGA_OUTCOME_MINIMUM = 0,       // converged, certified by the inertia
+    RUGA_OUTCOME_SADDLE = 1,        // residual small, but a direction of negative curvature is left
+    RUGA_OUTCOME_NOT_CONVERGED = 2, // the residual is above the tolerance
+    RUGA_OUTCOME_MOTION = 3         // dynamic motion, which seeks no equilibrium
 } ruga_outcome;
 
 // What one step did. Not converged is data, not an error: look at outcome.
@@ -277,9 +283,9 @@ typedef struct ruga_report {
     int newton_iterations;
     int linear_iterations;
     int factorizations;
-    int substeps;             // parts that the step was split into so as not to jump past onset
-    double residual_shell;    // relative, as in tolerance
-    double residual_coupled;  // relative; 0 where the interior is prescribed
+    int substeps;               // parts that the step was split into so as not to jump past onset
+    double residual_shell;      // relative, as in tolerance
+    double residual_coupled;    // relative; 0 where the interior is prescribed
     double constraint_residual; // |H x - H B q| / |H B q|
     double energy_membrane, energy_bending, energy_foundation, energy_interior, energy_kinetic,
         energy_external, energy_hinge; // J
