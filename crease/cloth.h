@@ -9,12 +9,6 @@
 #include "ruga/types.h"
 #include "shell/springs.h"
 
-typedef enum ruga_crease_style {
-    RUGA_CREASE_ANGLE,  // the signed springs of hinge.h
-    RUGA_CREASE_PAIRS,  // springs between nodes and their virtual copies
-    RUGA_CREASE_ACROSS, // bending and axial-bending springs across the crease
-} ruga_crease_style;
-
 // A spring that bends: its rest length at the rest angle theta0 is sqrt(constant + factor cos(theta0)).
 typedef struct ruga_fold_length {
     int segment; // of the cut whose rest angle counts; -1 = it stays as it is

@@ -119,6 +119,10 @@ const ruga_key ruga_keys[] = {
            "loses the part w damping / 2 of critical damping."),
     NUMBER("skin.drag", MODEL(skin.drag), "1/s", "0 1/s", NOT_NEGATIVE,
            "Of dynamic motion: the force over the momentum with which the air around holds every part back."),
+    CHOICE("skin.creases", MODEL(skin.creases), "angle", "angle|pairs|across",
+           "Hinges of creases. angle: signed springs against the fold angle. In dynamic motion also the 2015 paper's springs, "
+           "which do not tell valley from mountain. pairs: between nodes and their virtual copies; their stiffness falls "
+           "with cos^2 of half the rest angle. across: bending and axial-bending springs across the crease."),
     ENTRIES("skin.vary", "(none)",
             "Where the skin differs from the values above: each entry with a region, or one of gradient, "
             "attribute, texture (in a region, or everywhere), and with one or more of thickness, young, "

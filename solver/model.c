@@ -35,6 +35,9 @@ static ruga_status check_motion(const ruga_model_def* def) {
                 return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.motion: dynamic", i);
             }
         }
+        if (s->creases != RUGA_CREASE_ANGLE) {
+            return ruga_fail(RUGA_BAD_INPUT, "skin.creases: springs in place of angles need motion: dynamic");
+        }
         return s->model == RUGA_SKIN_SPRINGS
                    ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
                : started ? ruga_fail(RUGA_BAD_INPUT,
@@ -53,6 +56,11 @@ static ruga_status check_motion(const ruga_model_def* def) {
     }
     if (trouble) {
         return ruga_fail(RUGA_BAD_INPUT, "skin.motion: dynamic %s", trouble);
+    }
+    for (int i = 0; i < def->crease_count && s->creases != RUGA_CREASE_ANGLE; i++) {
+        if (def->creases[i].start > 0) {
+            return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.creases: angle", i);
+        }
     }
     RUGA_TRY(require(positive(s->density), "skin.density", s->density, "above 0 where the skin moves"));
     RUGA_TRY(require(s->damping >= 0 && isfinite(s->damping), "skin.damping", s->damping, "0 or above"));
@@ -581,7 +589,8 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
         model->lattice_def.depth = 0; // the lattice only carries the surface along: one layer will do
     }
     RUGA_TRY_DONE(build_mesh(model));
-    RUGA_TRY_DONE(def->crease_count > 0 ? build_creases(def, model) : ruga_variation_create(&def->skin, model));
+    RUGA_TRY_DONE(def->crease_count > 0 ? build_creases(def, model)
+                                        : ruga_variation_create(&def->skin, model));
     RUGA_TRY_DONE(build_skin_holds(model));
     RUGA_TRY_DONE(build_loads(model));
     if (model->has_interior) {

@@ -57,6 +57,7 @@ static ruga_status create_dynamic(ruga_moving* m) {
     def.elastic.raster = creases ? &creases->raster : &m->raster;
     def.elastic.cut = creases ? &creases->cut : &m->cut;
     def.elastic.skin = model->skin;
+    def.elastic.style = model->skin.creases;
     def.damping = model->skin.damping;
     def.drag = model->skin.drag;
     memcpy(def.gravity, model->gravity, sizeof def.gravity);
@@ -242,6 +243,7 @@ void ruga_moving_measure(ruga_moving* m, double time, const double* x, ruga_repo
         bool there = ruga_crease_is_there(creases, h, time);
         elastic->rest[creases->segment[h]] = there ? m->skin->hinges->rest[h] : creases->drawn[h];
     }
+    ruga_elastic_set_rest(elastic, elastic->rest); // and with it the lengths of springs
     ruga_elastic_force(elastic, x, m->slope, &e);
     put_energies(m, time, x, &e, report);
 }

@@ -124,6 +124,14 @@ typedef enum ruga_linear_kind { RUGA_LINEAR_DIRECT, RUGA_LINEAR_MINRES } ruga_li
 // dynamic motion.
 typedef enum ruga_skin_model { RUGA_SKIN_SHELL, RUGA_SKIN_SPRINGS, RUGA_SKIN_VOLUME } ruga_skin_model;
 
+// Hinges of creases in dynamic motion (Patkar, Jin and Fedkiw 2015, figure 3 (d) and (e), for the latter
+// two).
+typedef enum ruga_crease_style {
+    RUGA_CREASE_ANGLE,  // signed springs against the fold angle
+    RUGA_CREASE_PAIRS,  // springs between nodes and their virtual copies
+    RUGA_CREASE_ACROSS, // bending and axial-bending springs across the crease
+} ruga_crease_style;
+
 typedef struct ruga_skin_def {
     ruga_skin_model model;
     double thickness; // m, > 0
@@ -137,6 +145,7 @@ typedef struct ruga_skin_def {
     double relaxation; // s, for damped motion
     double damping; // s, >= 0, for dynamic motion: viscous stress over the elastic stress of the strain rate
     double drag;    // 1/s, >= 0, for dynamic motion: M drag v
+    ruga_crease_style creases; // angle unless the motion is dynamic
     // A skin that varies: values at the mesh's vertices, linear between them, in place of those above; NULL =
     // as above.
     int vertex_count;               // of each array given: the mesh's
