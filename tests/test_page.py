@@ -239,6 +239,18 @@ class Page(unittest.TestCase):
         self.assertEqual(sum(c[2] > c[0] + 60 for c in right), 0)
         self.assertGreater(sum(max(abs(a - b) for a, b in zip(c, right[0])) > 12 for c in right), 300)
 
+    def test_each_frame_has_its_own_displacement(self):
+        """Of the first frame, which is flat, none; of the last, up to the largest of all."""
+        with open(os.path.join(self.scratch.name, "sheet.html"), encoding="utf-8") as file:
+            text = file.read()
+        size = json.loads(text.split('id="meta">')[1].split("</script>")[0])
+        packed = text.split('id="displacement">')[1].split("</script>")[0]
+        values = zlib.decompress(base64.b64decode(packed))
+        first, last = values[:size["vertices"]], values[-size["vertices"]:]
+        self.assertEqual(len(values), size["vertices"] * size["frames"])
+        self.assertLessEqual(max(abs(value - 128) for value in first), 1)
+        self.assertGreater(max(abs(value - 128) for value in last), 120)
+
     def test_a_shell_without_an_interior_has_a_page_too(self):
         self.open("shell.html")
         self.assertTrue(self.browser.run("return document.getElementById('both').disabled"))
