@@ -391,9 +391,7 @@ static void assert_gltf_scene(const ruga_mesh* mesh) {
     assert_near(ruga_distance(mesh->position + 15, two), 0, 1e-12);
     for (int f = 0; f < 4; f++) {
         double n[3];
-        const int* t = mesh->triangle + 3 * f;
-        ruga_triangle_normal(mesh->position + 3 * t[0], mesh->position + 3 * t[1], mesh->position + 3 * t[2],
-                             n);
+        ruga_mesh_triangle_normal(mesh, f, n);
         assert_near(n[2], 4, 1e-12);
     }
     assert_int_equal(mesh->uv_triangle[0], 0);
