@@ -446,7 +446,8 @@ static void broken_drawings_are_refused_with_the_line(void** state) {
     refuse_drawing("<svg><path stroke='red' d='L1 1'/></svg>", "\"L1 1\"");
     refuse_drawing("<svg><path stroke='red' d='M0 0L0x1 nan'/></svg>", "path data");
     refuse_drawing("<svg><path stroke='red' d='M0 0L-0x1F 1'/></svg>", "path data");
-    refuse_drawing("<svg>\n<path stroke='red' d='M0 0A1e-200 1e-200 0 0 0 1 1'/></svg>", "svg:2: the numbers");
+    refuse_drawing("<svg>\n<path stroke='red' d='M0 0A1e-200 1e-200 0 0 0 1 1'/></svg>",
+                   "svg:2: the numbers");
     refuse_drawing("<svg><g transform='scale(1e200)'><rect stroke='red' width='1e200' height='1'/></g></svg>",
                    "too large");
     refuse_drawing("<svg>\n<rect stroke='black' width='50%' height='1'/></svg>",
