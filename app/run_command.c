@@ -218,7 +218,7 @@ static ruga_status write_frame(job* j, const ruga_report* report) {
     count_outcome(j, report->outcome);
     ruga_meter_frame(&j->meter, frame.time, report);
     // A picture that cannot be written is no reason to end a long run.
-    if (ruga_preview_frame(&j->preview, &j->scene.mesh, j->whole, frame.position) != RUGA_OK) {
+    if (ruga_preview_frame(&j->preview, ruga_model_shown(j->model), j->whole, frame.position) != RUGA_OK) {
         ruga_meter_erase(&j->meter);
         ruga_warn(j->arguments, "no more previews: %s", ruga_last_error());
         ruga_preview_clear(&j->preview);

@@ -35,7 +35,7 @@ static ruga_status load(const char* path, json_t** root) {
     ruga_text text;
     json_error_t error;
     RUGA_TRY(ruga_text_load(path, &text));
-    *root = json_loadb(text.data, text.size, 0, &error);
+    *root = json_loadb(text.at, (size_t)(text.end - text.at), 0, &error);
     ruga_text_close(&text);
     if (!*root) {
         return ruga_fail(RUGA_BAD_INPUT, "%s:%d: not JSON: %s", path, error.line, error.text);
