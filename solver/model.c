@@ -525,9 +525,10 @@ static ruga_status build_coupling(ruga_model* model) {
 static ruga_status build_interior(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(ruga_progress("building the lattice", 0));
     RUGA_TRY(ruga_lattice_create(model->sheet, &model->connectivity, &model->lattice_def, &model->lattice));
-    if (!ruga_model_is_prescribed(model)) {
-        RUGA_TRY(ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles,
-                                  &model->rows));
+    RUGA_TRY(
+        ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles, &model->rows));
+    if (ruga_model_is_prescribed(model)) { // only to see that each region is somewhere
+        ruga_rows_clear(&model->rows);
     }
     if (model->creases) {
         RUGA_TRY(ruga_lattice_copy_vertices(&model->lattice, model->mesh.vertex_count,
