@@ -10,6 +10,7 @@
 #include "core/vec3.h"
 #include "lattice/motion.h"
 #include "lattice/svd3.h"
+#include "solver/start.h"
 #include "solver/state.h"
 
 #include <math.h>
@@ -51,9 +52,12 @@ static void show(ruga_state* state) {
 static void set_start(ruga_state* state) {
     const ruga_model* model = state->model;
     size_t n = 3 * (size_t)model->mesh.vertex_count;
-    memcpy(state->x, model->mesh.position, n * sizeof *state->x);
-    memcpy(state->embedded, model->mesh.position, n * sizeof *state->x);
+    memcpy(state->x, ruga_start_shape(model), n * sizeof *state->x);
+    memcpy(state->embedded, ruga_start_shape(model), n * sizeof *state->x);
     if (!model->has_interior) {
+        if (state->skin->hinges) {
+            ruga_start_hinges(model, state->skin->hinges);
+        }
         return;
     }
     memcpy(state->q, model->lattice.rest, 3 * (size_t)model->lattice.node_count * sizeof *state->q);
@@ -329,7 +333,7 @@ static void set_handle_targets(ruga_state* state) {
                 continue;
             }
             double target[3];
-            ruga_handle_target(&model->handles[h], state->skin->time, model->mesh.position + 3 * (size_t)v,
+            ruga_handle_target(&model->handles[h], state->skin->time, ruga_start_shape(model) + 3 * (size_t)v,
                                target);
             bool follows = model->has_interior && model->handles[h].hold != RUGA_HOLD_SKIN;
             state->skin->target[i] = follows ? state->embedded[i] : target[axis];
