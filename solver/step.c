@@ -154,6 +154,15 @@ double ruga_state_gap(const ruga_state* state) {
     return state->model->creases ? ruga_cut_gap(&state->model->creases->cut, state->x) : 0;
 }
 
+void ruga_state_segment_gaps(const ruga_state* state, double* gap) {
+    const ruga_creases* creases = state->model->creases;
+    for (int h = 0; creases && h < creases->segment_count; h++) {
+        const int* end = creases->cut.segment[creases->segment[h]].end;
+        gap[h] = fmax(ruga_cut_gap_at(&creases->cut, end[0], state->x),
+                      ruga_cut_gap_at(&creases->cut, end[1], state->x));
+    }
+}
+
 ruga_status ruga_state_handle_forces(ruga_state* state, double* force) {
     for (int i = 0; i < 3 * state->model->handle_count && state->moving; i++) {
         force[i] = NAN; // seams and damping push, too, in impulses that no one sums

@@ -233,6 +233,9 @@ class Miura(unittest.TestCase):
         self.assertAlmostEqual(sum(c["hinge_energy"] for c in m["creases"]), m["energy"]["hinge"],
                                delta=1e-9 * m["energy"]["hinge"])
         self.assertEqual(m["crossings"], 0)
+        gap, crease = self.file["creases/segment_gap"][-1], self.file["creases/segment_crease"][:]
+        self.assertEqual([c["gap"] for c in m["creases"]], [gap[crease == c].max() for c in np.unique(crease)])
+        self.assertEqual(gap.max(), self.file["creases/gap"][-1])
         theta = self.slope_of(self.sizes(self.file)[0][-1])
         for c in m["creases"]:
             self.assertAlmostEqual(c["length"], SIDE, delta=1e-9)
