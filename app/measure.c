@@ -10,6 +10,7 @@
 #include "core/vec3.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 enum { STRIPS = 24, SAMPLES = 1024, BINS = 400 };
@@ -255,6 +256,18 @@ static double dirichlet_energy(const ruga_measure* m) {
     return sum;
 }
 
+double ruga_measure_volume(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                           const double* position) {
+    for (int e = 0; e < connectivity->edge_count; e++) {
+        if (connectivity->edge_triangle[e][0] < 0 || connectivity->edge_triangle[e][1] < 0) {
+            return NAN;
+        }
+    }
+    ruga_mesh deformed = *mesh;
+    deformed.position = (double*)(uintptr_t)position;
+    return ruga_mesh_volume(&deformed);
+}
+
 ruga_status ruga_measure_frame(ruga_measure* m, const double* position, const double* embedded,
                                ruga_measured* measured) {
     double square = 0, area = 0;
@@ -276,11 +289,7 @@ ruga_status ruga_measure_frame(ruga_measure* m, const double* position, const do
     if (m->flat) {
         RUGA_TRY(strip_wavelength(m, &measured->wavelength_fft));
     }
-    ruga_mesh deformed = *m->mesh;
-    double* copy = m->normal; // no longer needed
-    memcpy(copy, position, 3 * (size_t)m->mesh->vertex_count * sizeof *copy);
-    deformed.position = copy;
-    measured->volume = ruga_mesh_volume(&deformed);
+    measured->volume = ruga_measure_volume(m->mesh, &m->connectivity, position);
     return RUGA_OK;
 }
 

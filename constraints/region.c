@@ -130,9 +130,8 @@ ruga_status ruga_region_empty(const ruga_region* region, const ruga_mesh* mesh, 
     static const char* const names[] = {"all", "box", "sphere", "plane", "group", "vertices"};
     double min[3], max[3];
     ruga_mesh_bounds(mesh, min, max);
-    return ruga_fail(
-        RUGA_BAD_INPUT,
-        "handles[%d]: the region (%s) selects no %s; the rest mesh lies between (%g, %g, %g) and "
-        "(%g, %g, %g) m",
-        handle, names[region->kind], what, min[0], min[1], min[2], max[0], max[1], max[2]);
+    return ruga_fail(RUGA_BAD_INPUT,
+                     "handles.%d: the region (%s) selects no %s; the rest mesh lies between (%g, %g, %g) and "
+                     "(%g, %g, %g) m",
+                     handle, names[region->kind], what, min[0], min[1], min[2], max[0], max[1], max[2]);
 }

@@ -526,16 +526,24 @@ void ruga_cut_material(const ruga_cut* cut, const double* x, double* material) {
     }
 }
 
+double ruga_cut_gap_at(const ruga_cut* cut, int vertex, const double* x) {
+    if (vertex < cut->real_count) {
+        return 0;
+    }
+    const ruga_bound* b = &cut->bound[vertex - cut->real_count];
+    double gap = 0, first[3], at[3];
+    copy_position(cut, b, 0, x, first);
+    for (int k = 1; k < b->count; k++) {
+        copy_position(cut, b, k, x, at);
+        gap = fmax(gap, ruga_distance(first, at));
+    }
+    return gap;
+}
+
 double ruga_cut_gap(const ruga_cut* cut, const double* x) {
     double gap = 0;
     for (int i = 0; i < cut->bound_count; i++) {
-        const ruga_bound* b = &cut->bound[i];
-        double first[3], at[3];
-        copy_position(cut, b, 0, x, first);
-        for (int k = 1; k < b->count; k++) {
-            copy_position(cut, b, k, x, at);
-            gap = fmax(gap, ruga_distance(first, at));
-        }
+        gap = fmax(gap, ruga_cut_gap_at(cut, cut->real_count + i, x));
     }
     return gap;
 }

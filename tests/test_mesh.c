@@ -239,6 +239,8 @@ static void bad_shapes_are_refused(void** state) {
         {.shape = RUGA_SHAPE_SHEET, .size = {1, 1}},
         {.shape = RUGA_SHAPE_SHEET, .size = {1}, .edge = 0.1},
         {.shape = RUGA_SHAPE_SHEET, .size = {1, -1}, .edge = 0.1},
+        {.shape = RUGA_SHAPE_SHEET, .size = {1, 1, 1}, .edge = 0.1},
+        {.shape = RUGA_SHAPE_SPHERE, .size = {1, 2}, .edge = 0.1},
         {.shape = RUGA_SHAPE_SHEET, .size = {1, NAN}, .edge = 0.1},
         {.shape = RUGA_SHAPE_SHEET, .size = {1, INFINITY}, .edge = 0.1},
         {.shape = RUGA_SHAPE_SHEET, .size = {1, 1}, .edge = NAN},

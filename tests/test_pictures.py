@@ -5,6 +5,7 @@
 
     test_pictures.py RUGA SOURCE_DIR
 """
+import json
 import os
 import re
 import shutil
@@ -216,6 +217,13 @@ class Pictures(unittest.TestCase):
         page = self.read("page.html").decode()
         self.assertNotRegex(page, r"""(?i)(?:src|href)\s*=\s*["']?https?:""")
         self.assertEqual(len(re.findall(r'<script type="application/octet-stream" id="', page)), 4)
+        self.ruga("view", "folded.h5", "-o", "folded.html")
+        facts = json.loads(re.search(r'<script type="application/json"[^>]*>(.*?)</script>',
+                                     self.read("folded.html").decode(), re.S).group(1))
+        (angles,) = (panel for panel in facts["panels"] if panel["axis"] == "fold angle, deg")
+        self.assertEqual([s["name"] for s in angles["series"]], ["creases.0", "creases.1"])
+        self.assertGreater(angles["series"][0]["y"][-1], 20)
+        self.assertLess(angles["series"][1]["y"][-1], -20)
         self.refused("view", "sheet.h5", "--frames", "2:9", "-o", "p.html", saying="0:3")
 
     def test_gallery_script_remakes_one_picture(self):
