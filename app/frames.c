@@ -87,15 +87,6 @@ ruga_status ruga_check_pattern(const char* path, const ruga_frame_range* range) 
     return RUGA_OK;
 }
 
-ruga_status ruga_open_frames(const ruga_arguments* arguments, const char* pattern,
-                             ruga_result_reader** reader, ruga_frame_range* range) {
-    RUGA_TRY(ruga_check_output(pattern));
-    RUGA_TRY(ruga_open_result(ruga_operand(arguments), reader));
-    RUGA_TRY(
-        ruga_choose_frames(arguments, ruga_result_frame_count(*reader), ruga_has_pattern(pattern), range));
-    return ruga_check_pattern(pattern, range);
-}
-
 ruga_status ruga_frame_path(const char* pattern, int frame, char** path) {
     size_t size = strlen(pattern) + NUMBER_WIDTH_MAX + 16;
     RUGA_TRY(RUGA_NEW(*path, size));
