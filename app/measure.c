@@ -244,8 +244,7 @@ static double dirichlet_energy(const ruga_measure* m) {
     for (int f = 0; f < m->mesh->triangle_count; f++) {
         const int* t = m->mesh->triangle + 3 * (size_t)f;
         double n[3], g[3] = {0, 0, 0}, edge[3];
-        ruga_triangle_normal(m->mesh->position + 3 * (size_t)t[0], m->mesh->position + 3 * (size_t)t[1],
-                             m->mesh->position + 3 * (size_t)t[2], n);
+        ruga_mesh_triangle_normal(m->mesh, f, n);
         // |grad w| = |sum_i w_i e_i| / (2 A), e_i the edge opposite corner i.
         for (int i = 0; i < 3; i++) {
             ruga_subtract(m->mesh->position + 3 * (size_t)t[(i + 2) % 3],

@@ -43,7 +43,7 @@ typedef struct job {
     ruga_model* model;
     ruga_state* state;
     ruga_result* result;
-    double *restart, *force;
+    double *restart, *force, *gap;
     ruga_mesh shown;                                 // the model's, with `source`
     int* source;                                     // [V]
     double *thickness, *young, *growth, *wavelength; // of the mesh shown, or NULL
@@ -213,6 +213,7 @@ static ruga_status open_result(job* j) {
     };
     RUGA_TRY(ruga_crease_table_create(model, &j->creases));
     header.creases = j->creases.result.segment_count > 0 ? &j->creases.result : NULL;
+    RUGA_TRY(RUGA_NEW(j->gap, j->creases.result.segment_count));
     RUGA_TRY(RUGA_NEW_ZERO(j->force, 3 * (size_t)model->handle_count));
     RUGA_TRY(RUGA_NEW_ZERO(j->restart, header.restart_doubles));
     if (!j->continues) {
@@ -238,8 +239,10 @@ static ruga_status write_frame(job* j, const ruga_report* report) {
         .crease_angle = ruga_state_crease_angles(j->state),
         .crease_rest = ruga_state_crease_rests(j->state),
         .gap = ruga_state_gap(j->state),
+        .segment_gap = j->gap,
         .handle_force = j->force,
     };
+    ruga_state_segment_gaps(j->state, j->gap);
     RUGA_TRY(ruga_state_handle_forces(j->state, j->force));
     RUGA_TRY(ruga_result_append(j->result, &frame));
     j->whole = ruga_state_frame(j->state);
@@ -364,6 +367,7 @@ static void clear(job* j) {
     ruga_release(j->source);
     ruga_release(j->restart);
     ruga_release(j->force);
+    ruga_release(j->gap);
     ruga_release(j->thickness);
     ruga_release(j->young);
     ruga_release(j->growth);

@@ -180,18 +180,9 @@ done:
     return status;
 }
 
-static int find_group(const ruga_mesh* mesh, const char* name) {
-    for (int g = 0; g < mesh->group_count; g++) {
-        if (strcmp(mesh->group_name[g], name) == 0) {
-            return g;
-        }
-    }
-    return -1;
-}
-
 ruga_status ruga_curves_add_border(ruga_curves* curves, const ruga_curve* style, const ruga_mesh* mesh,
                                    const ruga_connectivity* edges, const char* group) {
-    int g = mesh->face_group ? find_group(mesh, group) : -1;
+    int g = mesh->face_group ? ruga_mesh_find_group(mesh, group) : -1;
     if (g < 0) {
         return ruga_fail(RUGA_BAD_INPUT, "a crease follows the group \"%s\", which the mesh does not have",
                          group);

@@ -241,17 +241,17 @@ const ruga_key ruga_keys[] = {
     NUMBER("time.step", MODEL(step), "s", "20 ms", POSITIVE, "Time from frame to frame."),
     INTEGERS("time.frames", 1, MODEL(frames), "50", 1, 1000000,
              "Number of frames after frame 0, the start. The only key that may change for a resumed run."),
-    SECTION("start", "{}", "How a skin in dynamic motion begins."),
+    SECTION("start", "{}", "How a skin with interior: none begins."),
     NUMBER("start.fold", MODEL(start.fold), "1", "0", ANY,
            "The flat panels between straight creases are turned by this part of the creases' rest angles at "
-           "time 0. "
-           "Refused where panels would have to bend."),
+           "time 0, and "
+           "the whole is laid as near to where it was as it goes. Refused where panels would have to bend."),
     NUMBER("start.cone", MODEL(start.cone), "rad", "0 rad", NOT_NEGATIVE,
-           "Then a sector of the plane z = 0 about the origin that has this angle is rolled into a whole "
-           "cone, its "
-           "tip at the origin and its axis along -z."),
+           "In dynamic motion. Then a sector of the plane z = 0 about the origin that has this angle is "
+           "rolled into a "
+           "whole cone, its tip at the origin and its axis along -z. Its first panel stays where it was."),
     NUMBERS("start.velocity", 3, MODEL(start.velocity), "m/s", "[0, 0, 0]", ANY,
-            "Velocity of what is not held."),
+            "In dynamic motion. Velocity of what is not held."),
     NUMBERS("gravity", 3, MODEL(gravity), "m/s^2", "[0, 0, 0]", ANY, "Acceleration on skin and interior."),
 
     ENTRIES("handles", "(none)",

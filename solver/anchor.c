@@ -8,14 +8,15 @@
 //
 //   u(x) = a + b x (x - c) / s,   a, b the rigid motion, c and s the part's middle and size,
 //
-// in six dimensions, at rest. A part that is loaded and held in part (a cloth hung by a point) is left as it
-// is: there the load itself decides how it turns. One that is loaded and held nowhere has an equilibrium only
-// where its loads balance.
+// in six dimensions, as it begins. A part that is loaded and held in part (a cloth hung by a point) is left
+// as it is: there the load itself decides how it turns. One that is loaded and held nowhere has an
+// equilibrium only where its loads balance.
 #include "solver/anchor.h"
 
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "lattice/union_find.h"
+#include "solver/start.h"
 
 #include <math.h>
 #include <string.h>
@@ -38,6 +39,7 @@ typedef struct anchor {
     int count; // of parts
     part* part;
     int* of;          // [V] the part of a node
+    const double* x;  // [V][3] how the skin begins
     double* gradient; // [V][3] of the loads' energy
 } anchor;
 
@@ -106,7 +108,7 @@ static void find_middles(anchor* a) {
 static void rigid_row(const anchor* a, int node, int axis, double row[6]) {
     const part* p = &a->part[a->of[node]];
     double r[3], turned[3];
-    ruga_subtract(a->model->mesh.position + 3 * (size_t)node, p->center, r);
+    ruga_subtract(a->x + 3 * (size_t)node, p->center, r);
     for (int b = 0; b < 3; b++) {
         double about[3] = {b == 0, b == 1, b == 2};
         ruga_cross(about, r, turned);
@@ -159,8 +161,7 @@ static void take_holds(anchor* a) {
 static ruga_status take_loads(anchor* a) {
     const ruga_model* model = a->model;
     double energy;
-    RUGA_TRY(ruga_loads_energy(model->loads, model->mesh.position, INFINITY, &energy, a->gradient, NULL, NULL,
-                               NULL));
+    RUGA_TRY(ruga_loads_energy(model->loads, a->x, INFINITY, &energy, a->gradient, NULL, NULL, NULL));
     for (int v = 0; v < model->mesh.vertex_count; v++) {
         part* p = &a->part[a->of[v]];
         for (int axis = 0; axis < 3; axis++) {
@@ -238,7 +239,7 @@ static ruga_status anchor_parts(anchor* a) {
 
 ruga_status ruga_model_anchor(ruga_model* model) {
     ruga_status status = RUGA_OK;
-    anchor a = {.model = model};
+    anchor a = {.model = model, .x = ruga_start_shape(model)};
     RUGA_TRY_DONE(RUGA_NEW(a.of, model->mesh.vertex_count));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(a.gradient, 3 * (size_t)model->mesh.vertex_count));
     status = anchor_parts(&a);

@@ -10,6 +10,7 @@
 #include "mesh/doctor.h"
 #include "shell/shell.h"
 #include "solver/anchor.h"
+#include "solver/start.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,7 +31,11 @@ static ruga_status check_motion(const ruga_model_def* def) {
     const char* trouble = NULL;
     if (s->motion != RUGA_SKIN_DYNAMIC) {
         const ruga_start_def* start = &def->start;
-        bool started = start->fold != 0 || start->cone != 0 || ruga_norm(start->velocity) > 0;
+        if (def->has_interior && start->fold != 0) {
+            return ruga_fail(RUGA_BAD_INPUT,
+                             "start.fold: needs interior: none; a skin starts on its interior");
+        }
+        bool started = start->cone != 0 || ruga_norm(start->velocity) > 0;
         for (int i = 0; i < def->crease_count; i++) {
             if (def->creases[i].start > 0) {
                 return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.motion: dynamic", i);
@@ -41,9 +46,11 @@ static ruga_status check_motion(const ruga_model_def* def) {
         }
         return s->model == RUGA_SKIN_SPRINGS
                    ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
-               : started ? ruga_fail(RUGA_BAD_INPUT,
-                                     "start: needs skin.motion: dynamic; a static skin starts at rest")
-                         : RUGA_OK;
+               : started
+                   ? ruga_fail(
+                         RUGA_BAD_INPUT,
+                         "start: cone and velocity need skin.motion: dynamic; a static skin starts at rest")
+                   : RUGA_OK;
     }
     if (def->has_interior) {
         trouble = "needs interior: none";
@@ -66,7 +73,6 @@ static ruga_status check_motion(const ruga_model_def* def) {
     RUGA_TRY(require(positive(s->density), "skin.density", s->density, "above 0 where the skin moves"));
     RUGA_TRY(require(s->damping >= 0 && isfinite(s->damping), "skin.damping", s->damping, "0 or above"));
     RUGA_TRY(require(s->drag >= 0 && isfinite(s->drag), "skin.drag", s->drag, "0 or above"));
-    RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
     RUGA_TRY(require(isfinite(ruga_norm(def->start.velocity)), "start.velocity",
                      ruga_norm(def->start.velocity), "finite"));
     return require(def->start.cone >= 0 && def->start.cone < 2 * RUGA_PI, "start.cone", def->start.cone,
@@ -84,6 +90,7 @@ static ruga_status check_material(const ruga_model_def* def) {
     for (int i = 0; i < 2 && !s->vertex_growth; i++) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
     }
+    RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
     RUGA_TRY(check_motion(def));
     RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation",
                      s->relaxation, "above 0"));
@@ -545,6 +552,7 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
     RUGA_TRY_DONE(build_mesh(model));
     RUGA_TRY_DONE(def->crease_count > 0 ? build_creases(def, model)
                                         : ruga_variation_create(&def->skin, model));
+    RUGA_TRY_DONE(ruga_start_create(model));
     RUGA_TRY_DONE(build_skin_holds(model));
     RUGA_TRY_DONE(build_loads(model));
     if (model->has_interior) {
@@ -584,6 +592,7 @@ void ruga_model_destroy(ruga_model** model_pointer) {
     ruga_variation_clear(&model->variation);
     ruga_release(model->vertex_area);
     ruga_release(model->skin_handle);
+    ruga_release(model->started);
     ruga_loads_destroy(&model->loads);
     ruga_foundation_clear(&model->foundation);
     ruga_clusters_clear(&model->clusters);

@@ -11,10 +11,8 @@ static const ruga_curve PLAIN = {.freedom = RUGA_FREEDOM_AUTO};
 static double least_area(const ruga_mesh* mesh) {
     double least = INFINITY;
     for (int f = 0; f < mesh->triangle_count; f++) {
-        const int* t = mesh->triangle + 3 * f;
         double n[3];
-        ruga_triangle_normal(mesh->position + 3 * t[0], mesh->position + 3 * t[1], mesh->position + 3 * t[2],
-                             n);
+        ruga_mesh_triangle_normal(mesh, f, n);
         least = fmin(least, n[2] < 0 ? -ruga_norm(n) : ruga_norm(n));
     }
     return least;
