@@ -73,9 +73,8 @@ ruga_status ruga_check_pattern(const char* path, const ruga_frame_range* range) 
     size_t length, other;
     const char* place = ruga_file_name_place(path, &length);
     if (!place && range->last > range->first) {
-        return ruga_fail(
-            RUGA_BAD_INPUT,
-            "%s: several frames need a place for their number in the name, such as frame_%%04d.obj", path);
+        return ruga_fail(RUGA_BAD_INPUT,
+                         "%s: several frames need a place for their number in the name, such as %%04d", path);
     }
     if (place && ruga_file_name_place(place + length, &other)) {
         return ruga_fail(RUGA_BAD_INPUT, "%s: the name has more than one place for the frame's number", path);

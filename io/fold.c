@@ -186,6 +186,14 @@ static ruga_status read_edge(const reader* r, size_t e, const json_t* ends, cons
             return fail(r, "edges_foldAngle", e, "is not an angle in degrees");
         }
     }
+    if ((assignment == RUGA_ASSIGNMENT_MOUNTAIN && turn > 0) ||
+        (assignment == RUGA_ASSIGNMENT_VALLEY && turn < 0)) {
+        RUGA_TRY(ruga_crease_pattern_note(
+            r->pattern,
+            "edges_foldAngle[%zu] is %g degrees, although edges_assignment calls the line a "
+            "%s: the angle counts",
+            e, turn * 180 / RUGA_PI, turn > 0 ? "mountain" : "valley"));
+    }
     // An angle of a border or a cut says nothing.
     bool folds = assignment != RUGA_ASSIGNMENT_BORDER && assignment != RUGA_ASSIGNMENT_CUT;
     return ruga_crease_pattern_add_edge(r->pattern, v[0], v[1], assignment, folds ? turn : NAN);

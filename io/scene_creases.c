@@ -133,6 +133,9 @@ static ruga_status add_pattern(loader* l, const ruga_scene_crease* crease, const
     RUGA_TRY_DONE(ruga_crease_pattern_curves(&pattern, &(ruga_curve){0}, false, &curves));
     if (curves.count == 0) {
         status = ruga_fail(RUGA_BAD_INPUT, "%s has no creases", file);
+        for (int i = 0; i < pattern.note_count; i++) { // where they went
+            status = ruga_fail(status, "%s; %s", ruga_last_error(), pattern.note[i]);
+        }
         goto done;
     }
     RUGA_TRY_DONE(add_lines(l, crease, file, &pattern, &curves, l->scene->mesh_unit));
