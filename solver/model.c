@@ -29,7 +29,8 @@ static ruga_status check_motion(const ruga_model_def* def) {
     const char* trouble = NULL;
     if (s->motion != RUGA_SKIN_DYNAMIC) {
         const ruga_start_def* start = &def->start;
-        bool started = start->fold != 0 || start->cone != 0 || ruga_norm(start->velocity) > 0;
+        bool started = start->fold != 0 || start->cone != 0 || ruga_norm(start->velocity) > 0 ||
+                       ruga_norm(start->spin) > 0;
         for (int i = 0; i < def->crease_count; i++) {
             if (def->creases[i].start > 0) {
                 return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.motion: dynamic", i);
@@ -68,6 +69,8 @@ static ruga_status check_motion(const ruga_model_def* def) {
     RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
     RUGA_TRY(require(isfinite(ruga_norm(def->start.velocity)), "start.velocity",
                      ruga_norm(def->start.velocity), "finite"));
+    RUGA_TRY(
+        require(isfinite(ruga_norm(def->start.spin)), "start.spin", ruga_norm(def->start.spin), "finite"));
     return require(def->start.cone >= 0 && def->start.cone < 2 * RUGA_PI, "start.cone", def->start.cone,
                    "between 0 and a whole turn");
 }

@@ -16,6 +16,7 @@
 #include <string.h>
 
 static const double MISFIT = 1e-9; // edges
+static const double ROLLED = 0.25; // edges: rolled copies of one place part a little
 
 struct ruga_moving {
     const ruga_model* model;
@@ -117,13 +118,13 @@ static ruga_status fold(ruga_moving* m, double* x) {
         turn[creases->segment[h]] =
             m->model->start.fold * (ruga_crease_rest_at(creases, h, 0) - creases->drawn[h]);
     }
-    ruga_status status =
-        ruga_cut_fold(&creases->raster, &creases->cut, turn, MISFIT * m->model->mean_edge, x);
+    double cone = m->model->start.cone, misfit = (cone > 0 ? ROLLED : MISFIT) * m->model->mean_edge;
+    ruga_status status = ruga_cut_fold(&creases->raster, &creases->cut, turn, cone, misfit, x);
     ruga_release(turn);
     return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "start.fold") : status;
 }
 
-// Rolled copies of one place may part a little: brought together, held ones too.
+// Brings rolled copies together, held ones too.
 static ruga_status close_gaps(const ruga_moving* m, double* x) {
     ruga_status status = RUGA_OK;
     ruga_stitch* stitch = NULL;
@@ -158,15 +159,16 @@ ruga_status ruga_moving_start(ruga_moving* m, double* x) {
     memcpy(x, m->model->mesh.position, 3 * (size_t)m->nodes * sizeof *x);
     if (m->model->creases && start->fold != 0) {
         RUGA_TRY(fold(m, x));
-    }
-    if (start->cone > 0) {
+    } else if (start->cone > 0) {
         ruga_roll_cone(m->nodes, start->cone, x);
     }
     if (m->model->creases) {
         RUGA_TRY(close_gaps(m, x));
     }
     for (int i = 0; i < 3 * m->nodes; i++) {
-        m->velocity[i] = m->model->skin_handle[i] >= 0 ? 0 : start->velocity[i % 3];
+        double turn[3];
+        ruga_cross(start->spin, x + 3 * (size_t)(i / 3), turn);
+        m->velocity[i] = m->model->skin_handle[i] >= 0 ? 0 : start->velocity[i % 3] + turn[i % 3];
     }
     ruga_dynamic_start(m->dynamic, x, m->velocity);
     take_angles(m);
@@ -267,6 +269,14 @@ ruga_status ruga_moving_step(ruga_moving* m, double time, double* x, ruga_report
     report->linear_iterations = done.damping_products;
     put_energies(m, time + m->model->step, x, &done.elastic, report);
     return RUGA_OK;
+}
+
+ruga_dynamic* ruga_moving_dynamic(ruga_moving* moving) {
+    return moving->dynamic;
+}
+
+const double* ruga_moving_velocity(const ruga_moving* moving) {
+    return moving->velocity;
 }
 
 // ---- restart -------------------------------------------------------------------------------------------

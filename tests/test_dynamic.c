@@ -61,10 +61,10 @@ static void panels_fold_rigidly_or_not_at_all(void** state) {
             turn[s] = m.c.cut.segment[s].curve >= 0 ? 2.4 : 0;
         }
         if (which == CROSS) {
-            assert_status(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 1e-9, m.x), RUGA_BAD_INPUT);
+            assert_status(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 0, 1e-9, m.x), RUGA_BAD_INPUT);
             assert_non_null(strstr(ruga_last_error(), "do not fit together"));
         } else {
-            assert_ok(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 1e-14, m.x));
+            assert_ok(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 0, 1e-14, m.x));
             ruga_hinges_make(&m.c.raster, &m.c.cut, hinge);
             for (int s = 0; s < segments; s++) {
                 assert_near(ruga_hinge_measure(&hinge[s], m.x, NULL, NULL), turn[s], 1e-12);
