@@ -425,7 +425,7 @@ class Runs(Case):
         self.ruga("run", scene, "-o", "threads.h5", "--threads", 2)
         self.assert_same(self.path("moving.h5"), self.path("threads.h5"))
         self.kill_and_resume(scene, 4, self.path("moving.h5"))
-        self.refused("run", scene, "-o", "wild.h5", "--set", "gravity=[0, 0, -1e9]",
+        self.refused("run", scene, "-o", "wild.h5", "--quiet", "--set", "gravity=[0, 0, -1e9]",
                      saying="cannot be stepped")
 
     def test_creases_from_a_pattern(self):
