@@ -13,6 +13,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+static ruga_pair pair_of(int a, int b, int curve) {
+    return (ruga_pair){{a < b ? a : b, a < b ? b : a}, curve};
+}
+
 static int compare_pairs(const void* a, const void* b) {
     const ruga_pair *p = a, *q = b;
     if (p->curve != q->curve) {
@@ -39,7 +43,7 @@ ruga_status ruga_pairs_create(const ruga_cut* cut, int* count, ruga_pair** pair)
         for (int i = 0; i < 3 && cut->segment[s].curve >= 0 && side[0]->triangle == side[1]->triangle; i++) {
             int a = side[0]->node[i], b = side[1]->node[i];
             if (a != b) {
-                list[found++] = (ruga_pair){{a < b ? a : b, a < b ? b : a}, cut->segment[s].curve};
+                list[found++] = pair_of(a, b, cut->segment[s].curve);
             }
         }
     }
@@ -53,6 +57,12 @@ ruga_status ruga_pairs_create(const ruga_cut* cut, int* count, ruga_pair** pair)
     }
     *pair = list;
     return RUGA_OK;
+}
+
+int ruga_pairs_find(int count, const ruga_pair* pair, int a, int b, int curve) {
+    const ruga_pair key = pair_of(a, b, curve);
+    const ruga_pair* at = bsearch(&key, pair, (size_t)count, sizeof *pair, compare_pairs);
+    return at ? (int)(at - pair) : -1;
 }
 
 double ruga_pair_energy(const ruga_pair* pair, double stiffness, double length, const double* x,

@@ -16,6 +16,8 @@ typedef struct ruga_pair {
 
 // All pairs of folded creases, each once, by curve and node. *pair [*count] is the caller's to release.
 ruga_status ruga_pairs_create(const ruga_cut* cut, int* count, ruga_pair** pair);
+// Index of the pair of two nodes at a curve, -1 = they are none.
+int ruga_pairs_find(int count, const ruga_pair* pair, int a, int b, int curve);
 
 // 1/2 k (|x_a - x_b| - length)^2, k in N/m. Derivatives by node 0 are SET where not NULL (those by node 1
 // have the other sign, mixed ones likewise). Where the nodes coincide the direction is undefined: the

@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "core/vec3.h"
+#include "crease/faces.h"
 #include "io/polygons.h"
 #include "io/text.h"
 #include "io/writer.h"
@@ -16,6 +17,7 @@
 #include <jansson.h>
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +37,7 @@ static ruga_status load(const char* path, json_t** root) {
     ruga_text text;
     json_error_t error;
     RUGA_TRY(ruga_text_load(path, &text));
-    *root = json_loadb(text.data, text.size, 0, &error);
+    *root = json_loadb(text.at, (size_t)(text.end - text.at), 0, &error);
     ruga_text_close(&text);
     if (!*root) {
         return ruga_fail(RUGA_BAD_INPUT, "%s:%d: not JSON: %s", path, error.line, error.text);
@@ -460,11 +462,15 @@ done:
     return status;
 }
 
-static ruga_status add_faces(const ruga_crease_pattern* p, ruga_polygons* polygons) {
+// panel [faces]: remeshing keeps the borders of groups, and so the folds.
+static ruga_status add_faces(const ruga_crease_pattern* p, const int* panel, ruga_polygons* polygons) {
     for (int v = 0; v < p->vertex_count; v++) {
         RUGA_TRY(ruga_polygons_add_vertex(polygons, p->position[v]));
     }
     for (int f = 0; f < p->face_count; f++) {
+        char name[32];
+        int length = snprintf(name, sizeof name, "panel %d", panel[f]);
+        RUGA_TRY(ruga_polygons_set_group(polygons, 0, name, (size_t)length));
         RUGA_TRY(ruga_polygons_add(polygons, 0));
         for (int k = p->face_start[f]; k < p->face_start[f + 1]; k++) {
             RUGA_TRY(ruga_polygons_add_corner(polygons, p->corner[k], -1));
@@ -476,11 +482,15 @@ static ruga_status add_faces(const ruga_crease_pattern* p, ruga_polygons* polygo
 static ruga_status mesh_faces(const ruga_crease_pattern* p, const char* path, ruga_mesh* mesh) {
     ruga_polygons polygons;
     ruga_status status = RUGA_OK;
+    int *panel = NULL, count;
     ruga_polygons_begin(&polygons);
-    RUGA_TRY_DONE(add_faces(p, &polygons));
+    RUGA_TRY_DONE(RUGA_NEW(panel, p->face_count));
+    RUGA_TRY_DONE(ruga_crease_pattern_panels(p, &count, panel));
+    RUGA_TRY_DONE(add_faces(p, panel, &polygons));
     RUGA_TRY_DONE(ruga_polygons_finish(&polygons, path, mesh));
 done:
     ruga_polygons_clear(&polygons);
+    ruga_release(panel);
     return status;
 }
 

@@ -536,7 +536,10 @@ static ruga_status check_size(ruga_make_def* def) {
     double* size = def->size;
     for (int k = 0; k < 3; k++) {
         bool missing = size[k] == 0 && k >= needed[def->shape];
-        if (!isfinite(size[k]) || !(size[k] > 0 || missing)) {
+        // A sheet has no third size, and a ball is as wide as it is high.
+        bool surplus = (def->shape == RUGA_SHAPE_SHEET && k == 2 && size[k] > 0) ||
+                       (def->shape == RUGA_SHAPE_SPHERE && size[k] > 0 && size[k] != size[0]);
+        if (!isfinite(size[k]) || !(size[k] > 0 || missing) || surplus) {
             return fail_size(def);
         }
     }

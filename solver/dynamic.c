@@ -111,11 +111,7 @@ static ruga_status set_mass(ruga_dynamic* d) {
     double* triangle = NULL;
     RUGA_TRY(RUGA_NEW(triangle, r->mesh.triangle_count));
     for (int f = 0; f < r->mesh.triangle_count; f++) {
-        const int* t = r->mesh.triangle + 3 * (size_t)f;
-        double n[3];
-        ruga_triangle_normal(r->mesh.position + 3 * (size_t)t[0], r->mesh.position + 3 * (size_t)t[1],
-                             r->mesh.position + 3 * (size_t)t[2], n);
-        triangle[f] = skin->density * skin->thickness * 0.5 * ruga_norm(n);
+        triangle[f] = skin->density * skin->thickness * ruga_mesh_triangle_area(&r->mesh, f);
     }
     ruga_cut_masses(d->def.elastic.cut, triangle, 0, false, d->mass);
     ruga_release(triangle);

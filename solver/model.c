@@ -9,6 +9,7 @@
 #include "core/vec3.h"
 #include "mesh/doctor.h"
 #include "shell/shell.h"
+#include "solver/start.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,8 +30,11 @@ static ruga_status check_motion(const ruga_model_def* def) {
     const char* trouble = NULL;
     if (s->motion != RUGA_SKIN_DYNAMIC) {
         const ruga_start_def* start = &def->start;
-        bool started = start->fold != 0 || start->cone != 0 || ruga_norm(start->velocity) > 0 ||
-                       ruga_norm(start->spin) > 0;
+        if (def->has_interior && start->fold != 0) {
+            return ruga_fail(RUGA_BAD_INPUT,
+                             "start.fold: needs interior: none; a skin starts on its interior");
+        }
+        bool started = start->cone != 0 || ruga_norm(start->velocity) > 0 || ruga_norm(start->spin) > 0;
         for (int i = 0; i < def->crease_count; i++) {
             if (def->creases[i].start > 0) {
                 return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.motion: dynamic", i);
@@ -41,8 +45,8 @@ static ruga_status check_motion(const ruga_model_def* def) {
         }
         return s->model == RUGA_SKIN_SPRINGS
                    ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
-               : started ? ruga_fail(RUGA_BAD_INPUT,
-                                     "start: needs skin.motion: dynamic; a static skin starts at rest")
+               : started ? ruga_fail(RUGA_BAD_INPUT, "start: cone, velocity and spin need skin.motion: "
+                                                     "dynamic; a static skin starts at rest")
                          : RUGA_OK;
     }
     if (def->has_interior) {
@@ -66,7 +70,6 @@ static ruga_status check_motion(const ruga_model_def* def) {
     RUGA_TRY(require(positive(s->density), "skin.density", s->density, "above 0 where the skin moves"));
     RUGA_TRY(require(s->damping >= 0 && isfinite(s->damping), "skin.damping", s->damping, "0 or above"));
     RUGA_TRY(require(s->drag >= 0 && isfinite(s->drag), "skin.drag", s->drag, "0 or above"));
-    RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
     RUGA_TRY(require(isfinite(ruga_norm(def->start.velocity)), "start.velocity",
                      ruga_norm(def->start.velocity), "finite"));
     RUGA_TRY(
@@ -86,6 +89,7 @@ static ruga_status check_material(const ruga_model_def* def) {
     for (int i = 0; i < 2 && !s->vertex_growth; i++) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
     }
+    RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
     RUGA_TRY(check_motion(def));
     RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation",
                      s->relaxation, "above 0"));
@@ -349,7 +353,7 @@ static void hold_in_space(ruga_model* model) {
     const double* x[3];
     double edge[3], normal[3];
     for (int i = 0; i < 3; i++) {
-        x[i] = model->mesh.position + 3 * (size_t)t[i];
+        x[i] = ruga_start_shape(model) + 3 * (size_t)t[i];
     }
     ruga_subtract(x[1], x[0], edge);
     ruga_triangle_normal(x[0], x[1], x[2], normal);
@@ -528,9 +532,10 @@ static ruga_status build_coupling(ruga_model* model) {
 static ruga_status build_interior(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(ruga_progress("building the lattice", 0));
     RUGA_TRY(ruga_lattice_create(model->sheet, &model->connectivity, &model->lattice_def, &model->lattice));
-    if (!ruga_model_is_prescribed(model)) {
-        RUGA_TRY(ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles,
-                                  &model->rows));
+    RUGA_TRY(
+        ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles, &model->rows));
+    if (ruga_model_is_prescribed(model)) { // only to see that each region is somewhere
+        ruga_rows_clear(&model->rows);
     }
     if (model->creases) {
         RUGA_TRY(ruga_lattice_copy_vertices(&model->lattice, model->mesh.vertex_count,
@@ -594,6 +599,7 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
     RUGA_TRY_DONE(build_mesh(model));
     RUGA_TRY_DONE(def->crease_count > 0 ? build_creases(def, model)
                                         : ruga_variation_create(&def->skin, model));
+    RUGA_TRY_DONE(ruga_start_create(model));
     RUGA_TRY_DONE(build_skin_holds(model));
     RUGA_TRY_DONE(build_loads(model));
     if (model->has_interior) {
@@ -630,6 +636,7 @@ void ruga_model_destroy(ruga_model** model_pointer) {
     ruga_variation_clear(&model->variation);
     ruga_release(model->vertex_area);
     ruga_release(model->skin_handle);
+    ruga_release(model->started);
     ruga_loads_destroy(&model->loads);
     ruga_foundation_clear(&model->foundation);
     ruga_clusters_clear(&model->clusters);

@@ -77,7 +77,7 @@ static void a_plain_pattern_is_read_as_it_is(void** state) {
     (void)state;
     ruga_crease_pattern p;
     read_text(
-        "{" SQUARE
+        "\xef\xbb\xbf{" SQUARE // with a byte order mark
         ", \"edges_foldAngle\": [0,0,0,0,0,0,0,0,-180,-90,45.5,null], \"frame_unit\": \"cm\"," SQUARE_FACES
         "}",
         &p);
@@ -445,6 +445,15 @@ static void broken_drawings_are_refused_with_the_line(void** state) {
                    "svg:3: path data cannot be read from \"L1 x\" on");
     refuse_drawing("<svg><path stroke='red' d='L1 1'/></svg>", "\"L1 1\"");
     refuse_drawing("<svg><path stroke='red' d='M0 0L0x1 nan'/></svg>", "path data");
+    refuse_drawing("<svg><path stroke='red' d='M0 0L-0x1F 1'/></svg>", "path data");
+    refuse_drawing("<svg>\n<path stroke='red' d='M0 0A1e-200 1e-200 0 0 0 1 1'/></svg>",
+                   "svg:2: the numbers");
+    refuse_drawing("<svg><g transform='scale(1e200)'><rect stroke='red' width='1e200' height='1'/></g></svg>",
+                   "too large");
+    refuse_drawing("<svg>\n<rect stroke='black' width='50%' height='1'/></svg>",
+                   "svg:2: width=\"50%\" is not");
+    refuse_drawing("<svg><circle stroke='black' r='3mm'/></svg>", "r=\"3mm\" is not a number");
+    refuse_drawing("<svg><line stroke='red' x1='left' x2='1'/></svg>", "x1=\"left\"");
     refuse_drawing("<svg>\n<line x1='0' stroke='red'", "svg:2: not XML: unclosed token");
     refuse_drawing("<svg><!-- ", "not XML: unclosed token");
     refuse_drawing("<svg>\n<g>\n</svg>", "svg:3: not XML: mismatched tag");
