@@ -4,6 +4,7 @@
 // ruga explain: what a scene means, before any solve.
 #include "app/command.h"
 #include "app/console.h"
+#include "app/creases.h"
 #include "app/estimate.h"
 #include "lattice/motion.h"
 #include "shell/shell.h"
@@ -253,6 +254,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
         say_all(arguments, &f);
     }
     ruga_warn_of_handles(arguments, f.model);
+    ruga_warn_of_creases(arguments, f.model);
     status = judge_edges(arguments, &f);
 done:
     ruga_model_destroy(&model);

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/progress.h"
 #include "core/vec3.h"
+#include "lattice/union_find.h"
 #include "mesh/doctor.h"
 #include "shell/shell.h"
 #include "solver/start.h"
@@ -90,6 +91,9 @@ static ruga_status check_material(const ruga_model_def* def) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
     }
     RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
+    if (def->start.fold != 0 && def->crease_count == 0) {
+        return ruga_fail(RUGA_BAD_INPUT, "start.fold: there are no creases to fold about");
+    }
     RUGA_TRY(check_motion(def));
     RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation",
                      s->relaxation, "above 0"));
@@ -322,12 +326,15 @@ static void hold_selected(ruga_model* model, int h, int count, const int* select
     hold_pieces(model, h, in);
 }
 
-// The uncut triangle nearest to the middle; any where all are cut.
-static int middle_triangle(const ruga_model* model) {
+// The uncut triangle of a part that is nearest to the middle; any where all are cut.
+static int middle_triangle(const ruga_model* model, int* part, int root) {
     double nearest = INFINITY;
     int best = 0;
     for (int p = 0; p < model->mesh.triangle_count; p++) {
         const int* t = model->mesh.triangle + 3 * (size_t)p;
+        if (ruga_sets_find(part, t[0]) != root) {
+            continue;
+        }
         double off[3] = {-model->center[0], -model->center[1], -model->center[2]};
         for (int i = 0; i < 3; i++) {
             ruga_add_scaled(1.0 / 3, model->mesh.position + 3 * (size_t)t[i], off);
@@ -345,11 +352,10 @@ static int largest_component(const double v[3]) {
     return fabs(v[0]) >= fabs(v[1]) && fabs(v[0]) >= fabs(v[2]) ? 0 : fabs(v[1]) >= fabs(v[2]) ? 1 : 2;
 }
 
-// A folding sheet that nothing holds would drift and turn: six components of one triangle are held, which
-// takes no force. Its first corner; of the second what is across the edge between them; of the third the
-// height.
-static void hold_in_space(ruga_model* model) {
-    const int* t = model->mesh.triangle + 3 * (size_t)middle_triangle(model);
+// Six components of a triangle: its first corner; of the second what is across the edge between them; of the
+// third the height.
+static void hold_in_space(ruga_model* model, int triangle) {
+    const int* t = model->mesh.triangle + 3 * (size_t)triangle;
     const double* x[3];
     double edge[3], normal[3];
     for (int i = 0; i < 3; i++) {
@@ -364,6 +370,45 @@ static void hold_in_space(ruga_model* model) {
         model->skin_handle[3 * (size_t)t[2] + (size_t)axis] = axis == up ? model->handle_count : -1;
     }
     model->any_skin_held = true;
+    model->parts_in_space++;
+}
+
+// A folding sheet that nothing holds would drift and turn, and so would each piece that cuts make of it: one
+// triangle of each is held, which takes no force but against loads.
+static ruga_status hold_loose_parts(ruga_model* model) {
+    ruga_status status = RUGA_OK;
+    const ruga_cut* cut = &model->creases->cut;
+    int nodes = model->mesh.vertex_count, *part = NULL;
+    bool* held = NULL;
+    RUGA_TRY_DONE(RUGA_NEW(part, nodes));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(held, nodes));
+    for (int n = 0; n < nodes; n++) {
+        part[n] = n;
+    }
+    for (int k = 0; k < 3 * model->mesh.triangle_count; k++) {
+        ruga_sets_unite(part, model->mesh.triangle[k - k % 3], model->mesh.triangle[k]);
+    }
+    for (int b = 0; b < cut->bound_count; b++) {
+        for (int k = 1; k < cut->bound[b].count; k++) {
+            ruga_sets_unite(part, cut->parent[cut->bound[b].first][0],
+                            cut->parent[cut->bound[b].first + k][0]);
+        }
+    }
+    for (int i = 0; i < 3 * nodes; i++) {
+        int root = ruga_sets_find(part, i / 3);
+        held[root] = held[root] || model->skin_handle[i] >= 0;
+    }
+    for (int p = 0; p < model->mesh.triangle_count; p++) {
+        int root = ruga_sets_find(part, model->mesh.triangle[3 * p]);
+        if (!held[root]) {
+            hold_in_space(model, middle_triangle(model, part, root));
+            held[root] = true;
+        }
+    }
+done:
+    ruga_release(part);
+    ruga_release(held);
+    return status;
 }
 
 // Which handle holds which component of the skin; the first one wins.
@@ -389,9 +434,8 @@ static ruga_status build_skin_holds(ruga_model* model) {
         }
         hold_selected(model, h, count, selected, in);
     }
-    if (model->creases && !model->has_interior && !model->any_skin_held &&
-        model->skin.motion != RUGA_SKIN_DYNAMIC) {
-        hold_in_space(model);
+    if (model->creases && !model->has_interior && model->skin.motion != RUGA_SKIN_DYNAMIC) {
+        RUGA_TRY_DONE(hold_loose_parts(model));
     }
 done:
     ruga_release(selected);
