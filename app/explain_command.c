@@ -4,6 +4,7 @@
 // ruga explain: what a scene means, before any solve.
 #include "app/command.h"
 #include "app/console.h"
+#include "app/creases.h"
 #include "app/estimate.h"
 #include "lattice/motion.h"
 #include "shell/shell.h"
@@ -258,6 +259,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     } else {
         say_all(arguments, &f);
     }
+    ruga_warn_of_creases(arguments, f.model);
     for (int i = 0; i < 2; i++) {
         if (*f.judged[i] && !(f.refused && i == 0)) {
             ruga_warn(arguments, "%s", f.judged[i]);

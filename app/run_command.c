@@ -264,6 +264,7 @@ static ruga_status simulate(job* j) {
     warn_of_coarse_mesh(j);
     warn_of_loose_fit(j);
     warn_of_handles(j);
+    ruga_warn_of_creases(j->arguments, j->model);
     RUGA_TRY(ruga_state_create(j->model, &j->state));
     RUGA_TRY(open_result(j));
     if (!j->continues) {

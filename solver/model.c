@@ -91,6 +91,9 @@ static ruga_status check_material(const ruga_model_def* def) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
     }
     RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
+    if (def->start.fold != 0 && def->crease_count == 0) {
+        return ruga_fail(RUGA_BAD_INPUT, "start.fold: there are no creases to fold about");
+    }
     RUGA_TRY(check_motion(def));
     RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation",
                      s->relaxation, "above 0"));
