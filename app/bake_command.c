@@ -9,6 +9,7 @@
 #include "app/frames.h"
 #include "core/memory.h"
 #include "core/vec3.h"
+#include "io/file_name.h"
 #include "io/image.h"
 #include "io/units.h"
 #include "io/writer.h"
@@ -452,12 +453,10 @@ static json_t* describe_blend(job* j, json_t* names) {
 // "wrinkles_%d.exr" -> "wrinkles_weights.json"
 static ruga_status name_weights(const job* j, char** path) {
     size_t size = strlen(j->pattern) + 32;
-    const char *place = strchr(j->pattern, '%'), *dot = strrchr(j->pattern, '.');
-    while (place && place[1 + strspn(place + 1, "0123456789")] != 'd') {
-        place = strchr(place + 1, '%');
-    }
+    size_t length = 0;
+    const char *place = ruga_file_name_place(j->pattern, &length), *dot = strrchr(j->pattern, '.');
     RUGA_ASSERT(place && dot > place);
-    const char* rest = place + 2 + strspn(place + 1, "0123456789");
+    const char* rest = place + length;
     RUGA_TRY(RUGA_NEW(*path, size));
     (void)snprintf(*path, size, "%.*sweights%.*s.json", (int)(place - j->pattern), j->pattern,
                    (int)(dot - rest), rest);

@@ -262,7 +262,7 @@ static ruga_status read_forces(job* j) {
     }
     for (int frame = 0; frame < j->panels->frame_count && shown > 0 && status == RUGA_OK; frame++) {
         status = ruga_result_read_handle_force(j->reader, frame, force);
-        for (int h = 0; h < shown; h++) {
+        for (int h = 0; h < shown && status == RUGA_OK; h++) {
             y[h][frame] = ruga_norm(force + 3 * (size_t)h);
         }
     }

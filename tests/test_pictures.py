@@ -17,6 +17,8 @@ import unittest
 import h5py
 import numpy
 
+from picture import pixels
+
 RUGA, SOURCE = (os.path.abspath(path) for path in (sys.argv.pop(1), sys.argv.pop(1)))
 SCENE = """
 mesh:       {make: {shape: sheet, size: [12 cm, 4 cm], edge: 4 mm}}
@@ -45,6 +47,17 @@ creases:
     hinge: {stiffness: 0.5 N, animate: [{time: 0 s, angle: 0 deg}, {time: 40 ms, angle: -30 deg}]}
 handles:  [{region: {sphere: {center: [0, 0, 0], radius: 9 mm}}, fix: true}]
 time:     {step: 20 ms, frames: 2}
+"""
+CUT = """
+mesh:     {make: {shape: sheet, size: [12 cm, 4 cm], edge: 8 mm}}
+skin:     {thickness: 0.2 mm, young: 10 MPa}
+interior: none
+gravity:  [0, -9.81, 0]
+creases:  [{curve: {polyline: [[1 mm, -3 cm, 0], [1 mm, 3 cm, 0]]}, cut: true}]
+handles:
+  - {region: {plane: {center: [0, 0, 0], normal: [-1, 0, 0]}}, fix: true}
+  - {region: {plane: {center: [2 mm, 0, 0], normal: [1, 0, 0]}}, move: {translate: [4 cm, 0, 0]}, during: [0 s, 20 ms]}
+time:     {step: 20 ms, frames: 1}
 """
 SIZE = ("--width", "120", "--height", "90")
 
@@ -250,6 +263,17 @@ class Pictures(unittest.TestCase):
             self.assertTrue(numpy.array_equal(a["shell/position"][:], b["shell/position"][:]))
         self.refused("run", "sheet.yaml", "-o", "x.h5", "--preview", "no/such/place", saying="--preview")
         self.assertFalse(os.path.exists(self.path("x.h5")))
+
+    def test_previews_show_the_sheet_as_it_is_cut(self):
+        with open(self.path("cut.yaml"), "w", encoding="utf-8") as file:
+            file.write(CUT)
+        self.ruga("run", "cut.yaml", "-o", "cut.h5", "--preview", "cut", "--quiet")
+        parts = []
+        for frame in range(2):
+            rows, n = pixels(self.read(f"cut/frame_000{frame}.png"))
+            clay = [any(row[i] > row[i + 2] + 30 for row in rows) for i in range(0, len(rows[0]), n)]
+            parts.append(sum(now and not before for before, now in zip([False] + clay, clay)))
+        self.assertEqual(parts, [1, 2])
 
     def test_view_writes_a_page_or_says_why_not(self):
         done = self.call("view", "sheet.h5", "-o", "page.html")
