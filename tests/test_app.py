@@ -264,6 +264,9 @@ class Scenes(Case):
         stronger = self.json("explain", self.scene, "--strain", "10%")
         self.assertGreater(stronger["amplitude"], facts["amplitude"])
         self.assertRegex(self.ruga("explain", self.scene).stdout, r"skin.density +900 kg/m\^3 +\(default\)")
+        cloth = self.write("cloth.yaml", "mesh: {make: {shape: sheet, size: [20 cm, 20 cm]}}\ninterior: none\n"
+                           "skin: {motion: dynamic}\n")
+        self.assertGreater(self.json("explain", cloth)["seconds"], 0)
 
     def test_a_coarse_mesh_is_warned_of_and_then_refused_but_explained(self):
         coarse = ("--set", "mesh.make.edge=7 mm")
