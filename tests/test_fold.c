@@ -133,14 +133,16 @@ static void bad_patterns_are_repaired_aloud(void** state) {
     assert_near(length_of(&p, RUGA_ASSIGNMENT_MOUNTAIN), 4 + 1, 1e-9);
     assert_near(length_of(&p, RUGA_ASSIGNMENT_VALLEY), 4 + 1, 1e-9);
     ruga_crease_pattern_clear(&p);
-    // An outline that is open at (0, 0), beside a closed one; and an angle of the other sign than the letter's.
+    // An outline that is open at (0, 0), beside a closed one; and an angle of the other sign than the
+    // letter's.
     read_text("{\"vertices_coords\": [[0,0],[1,0],[2,0],[2,1],[1,1],[0,1]],"
               "\"edges_vertices\": [[1,2],[2,3],[3,4],[4,5],[5,0],[1,4],[1,3]],"
               "\"edges_assignment\": [\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"V\"],"
               "\"edges_foldAngle\": [0,0,0,0,0,0,-30]}",
               &p);
     assert_true(has_note(&p, "2 border lines enclose nothing, as the outline is open at (0, 0)"));
-    assert_true(has_note(&p, "edges_foldAngle[6] is -30 degrees, although edges_assignment calls the line a valley"));
+    assert_true(
+        has_note(&p, "edges_foldAngle[6] is -30 degrees, although edges_assignment calls the line a valley"));
     assert_false(has_note(&p, "end within a face"));
     assert_int_equal(p.face_count, 2);
     ruga_crease_pattern_clear(&p);
@@ -362,9 +364,13 @@ static void strokes_say_what_lines_are(void** state) {
         "<defs><line stroke='red' x1='0' y1='0' x2='9' y2='9'/></defs>"
         "<line stroke='red' display='none' x1='0' y1='0' x2='9' y2='9'/>"
         "<line x1='0' y1='0' x2='9' y2='9'/>"
+        "<line stroke='chucknorris' x1='0' y1='0' x2='9' y2='9'/>"
         "</svg>",
         &p);
     assert_int_equal(p.face_count, 9);
+    assert_true(has_note(
+        &p,
+        "1 shapes were left out, as the colour of their stroke is not known; the first is 'chucknorris'"));
     const ruga_assignment wanted[] = {
         RUGA_ASSIGNMENT_MOUNTAIN,   RUGA_ASSIGNMENT_VALLEY, RUGA_ASSIGNMENT_FLAT,     RUGA_ASSIGNMENT_CUT,
         RUGA_ASSIGNMENT_UNASSIGNED, RUGA_ASSIGNMENT_FLAT,   RUGA_ASSIGNMENT_MOUNTAIN, RUGA_ASSIGNMENT_VALLEY};
