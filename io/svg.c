@@ -26,8 +26,8 @@ static const double WELD = 1e-4; // of the drawing's size
 
 typedef struct style {
     ruga_svg_transform transform;
-    long stroke;        // 0xrrggbb, -1 = none, -2 = of a colour that is not known
-    ruga_slice unknown; // its text
+    long stroke;      // 0xrrggbb, -1 = none, -2 = of a colour that is not known
+    char unknown[32]; // its text
     double opacity, stroke_opacity;
     bool hidden;
 } style;
@@ -43,7 +43,7 @@ typedef struct reader {
     int sheet_length, sheet_capacity;
     bool in_sheet;
     int without_stroke, white, unknown;
-    ruga_slice first_unknown;   // a part of the file
+    char first_unknown[32];
     ruga_assignment assignment; // of the shape at hand
     double angle;
 } reader;
@@ -187,7 +187,8 @@ static double read_opacity(ruga_slice text, double before) {
 static void set_property(style* s, double outer_opacity, ruga_slice name, ruga_slice value) {
     if (ruga_slice_is(name, "stroke")) {
         s->stroke = read_colour(value, s->stroke);
-        s->unknown = value;
+        (void)snprintf(s->unknown, sizeof s->unknown, "%.*s", (int)(value.length < 31 ? value.length : 31),
+                       value.at);
     } else if (ruga_slice_is(name, "opacity")) {
         s->opacity = outer_opacity * read_opacity(value, 1);
     } else if (ruga_slice_is(name, "stroke-opacity")) {
@@ -399,8 +400,9 @@ static bool is_one_of(ruga_slice name, const char* const* list) {
 static ruga_status read_shape(reader* r, const style* s) {
     if (s->hidden || s->stroke < 0) {
         r->without_stroke += s->stroke == -1;
-        r->first_unknown = s->stroke == -2 && r->unknown == 0 ? s->unknown : r->first_unknown;
-        r->unknown += s->stroke == -2;
+        if (s->stroke == -2 && r->unknown++ == 0) {
+            memcpy(r->first_unknown, s->unknown, sizeof r->first_unknown);
+        }
         return RUGA_OK;
     }
     r->assignment = assignment_of(s->stroke);
@@ -480,11 +482,10 @@ static ruga_status read_pattern(reader* r, const ruga_text* text, double toleran
             ruga_crease_pattern_note(pattern, "%d shapes without a stroke were left out", r->without_stroke));
     }
     if (r->unknown > 0) {
-        RUGA_TRY(ruga_crease_pattern_note(
-            pattern,
-            "%d shapes were left out, as the colour of their stroke is not known; the first "
-            "is '%.*s': write #rrggbb",
-            r->unknown, (int)fmin((double)r->first_unknown.length, 40), r->first_unknown.at));
+        RUGA_TRY(ruga_crease_pattern_note(pattern,
+                                          "%d shapes were left out, as the colour of their stroke is not "
+                                          "known; the first is '%s': write #rrggbb",
+                                          r->unknown, r->first_unknown));
     }
     if (r->white > 0) {
         RUGA_TRY(ruga_crease_pattern_note(pattern, "%d white shapes were left out", r->white));
