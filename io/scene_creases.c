@@ -85,6 +85,7 @@ static ruga_status add_lines(loader* l, const ruga_scene_crease* crease, const c
         def.points = points;
         def.point_count = curve->point_count;
         def.closed = curve->closed;
+        def.freedom = def.freedom == RUGA_FREEDOM_AUTO ? curve->freedom : def.freedom;
         def.kind = crease->cut ? RUGA_CREASE_CUT : curve->kind;
         def.assignment = ruga_assignment_letter(edge->assignment);
         def.rest = crease->rest.word ? crease->scale * ruga_crease_pattern_rest(edge) : def.rest;

@@ -146,6 +146,20 @@ static void bad_patterns_are_repaired_aloud(void** state) {
     assert_false(has_note(&p, "end within a face"));
     assert_int_equal(p.face_count, 2);
     ruga_crease_pattern_clear(&p);
+    // A curved valley in two pieces with a flat line between, and angles that differ by round-off, is one
+    // crease, which may bend.
+    read_text("{\"vertices_coords\": [[0,0],[2,0],[4,0],[4,4],[2,4],[0,4],[1.8,2]],"
+              "\"edges_vertices\": [[0,1],[1,2],[2,3],[3,4],[4,5],[5,0],[1,6],[6,4],[6,3]],"
+              "\"edges_assignment\": [\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"V\",\"V\",\"F\"],"
+              "\"edges_foldAngle\": [0,0,0,0,0,0,30,30.000000000001,0]}",
+              &p);
+    ruga_curves bent = {0};
+    assert_ok(ruga_crease_pattern_curves(&p, &(ruga_curve){0}, false, &bent));
+    assert_int_equal(bent.count, 1);
+    assert_int_equal(bent.curve[0].point_count, 3);
+    assert_int_equal(bent.curve[0].freedom, RUGA_FREEDOM_FULL);
+    ruga_curves_clear(&bent);
+    ruga_crease_pattern_clear(&p);
     // A closed line that nothing joins to the border.
     read_text("{\"vertices_coords\": [[0,0],[4,0],[4,4],[0,4],[1,1],[2,1],[2,2]],"
               "\"edges_vertices\": [[0,1],[1,2],[2,3],[3,0],[4,5],[5,6],[6,4]],"
