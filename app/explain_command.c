@@ -40,12 +40,12 @@ static void judge(facts* f) {
     if (f->refused) {
         (void)snprintf(
             f->judged[0], sizeof f->judged[0],
-            "%.2g edges per wavelength are below %g, run will refuse this: remesh with edge %.3g mm, or "
+            "%.3g edges per wavelength are below %g, run will refuse this: remesh with edge %.3g mm, or "
             "set solver.allow_coarse",
             f->edges, edges_least, good);
     } else if (f->edges < edges_good) {
         (void)snprintf(f->judged[0], sizeof f->judged[0],
-                       "%.2g edges per wavelength are below %g: remesh with edge %.3g mm", f->edges,
+                       "%.3g edges per wavelength are below %g: remesh with edge %.3g mm", f->edges,
                        edges_good, good);
     }
     ruga_judge_handles(f->model, f->judged[1], sizeof f->judged[1]);

@@ -142,7 +142,7 @@ static void warn_of_coarse_mesh(const job* j) {
     if (j->model->has_interior && j->model->solves_skin && edges < 8) {
         ruga_warn(
             j->arguments,
-            "the mesh has %.2g edges per wrinkle wavelength (%.3g mm); below 8 wrinkles come out too long or "
+            "the mesh has %.3g edges per wrinkle wavelength (%.3g mm); below 8 wrinkles come out too long or "
             "not at all: remesh with edge %.3g mm",
             edges, 1e3 * wavelength, 1e3 * wavelength / 8);
     }

@@ -472,7 +472,7 @@ static ruga_status build_coupling(ruga_model* model) {
     if (model->edges < 3 && !model->solver.allow_coarse) {
         return ruga_fail(
             RUGA_BAD_INPUT,
-            "the mesh has %.2g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
+            "the mesh has %.3g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
             "least 3 are needed and 8 are good: remesh with edge %.3g m, or set solver.allow_coarse",
             model->edges, model->mean_edge, model->edges_wavelength, model->edges_wavelength / 8);
     }
