@@ -8,11 +8,11 @@
 // the top are shared out by rows (forward) or by columns (backward). Sums are in the same order for any
 // number of threads.
 //
-// The rough solve reads a copy of L in single precision, half as many bytes, but computes in double: it
-// applies the inverse of L' D L'^T exactly, symmetric and with the inertia of D, where L' is L to 6e-8.
+// Where L is stored in single precision, half as many bytes are read, but all is computed in double: the inverse of
+// the stored L D L^T is applied exactly, symmetric and with the inertia of D. ruga_ldl_solve refines the solution
+// with residuals in double.
 #include "solver/ldl.h"
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/wide.h"
 
@@ -75,13 +75,13 @@ DEFINE_KERNELS(float, subtract_float, project_float)
 // One pass: the mode, and one panel in either precision.
 typedef struct pass {
     ruga_ldl* ldl;
-    bool single, absolute;
+    bool absolute;
     double* x; // [n] by step
 } pass;
 
 typedef struct panel {
-    const double* wide;
-    const float* single; // NULL: the doubles are read
+    const double* wide;  // one of them
+    const float* single;
     size_t stride;
 } panel;
 
@@ -154,7 +154,10 @@ static void backward_chunk(int begin, int end, int chunk, void* context) {
 
 static panel panel_of(const pass* p, const front_record* r) {
     const task_memory* m = &p->ldl->memory[r->task];
-    return (panel){m->factor + r->factor, p->single ? m->single + r->factor : NULL, (size_t)r->rows};
+    if (p->ldl->single) {
+        return (panel){.single = (const float*)m->factor + r->factor, .stride = (size_t)r->rows};
+    }
+    return (panel){.wide = (const double*)m->factor + r->factor, .stride = (size_t)r->rows};
 }
 
 static bool is_shared(const pass* p, const front_record* r) {
@@ -191,8 +194,7 @@ static void forward_front(const pass* p, int s, double* y, double* up) {
 }
 
 // M = D^-1 or, absolute, |D^-1| = (M^2 + |det M| I) / sqrt(tr M^2 + 2 |det M|) for blocks (Cayley-Hamilton).
-static void apply_pair(const double d[4], bool absolute, double* x, double* y) {
-    double a = d[0], b = d[1], c = d[2];
+static void apply_pair(double a, double b, double c, bool absolute, double* x, double* y) {
     if (absolute) {
         double det = fabs(a * c - b * b), trace = a * a + 2 * b * b + c * c;
         double root = sqrt(trace + 2 * det), off = b * (a + c);
@@ -206,15 +208,22 @@ static void apply_pair(const double d[4], bool absolute, double* x, double* y) {
     *x = sum;
 }
 
-static void apply_pivots(const double* d, int count, bool absolute, double* y) {
-    for (int k = 0; k < count; k++) {
-        if (d[2 * k + 1] != 0) {
-            apply_pair(d + 2 * (size_t)k, absolute, &y[k], &y[k + 1]);
+// D^-1 stands behind the panel: its entry k.
+static double pivot_entry(const panel* l, int done, int k) {
+    size_t place = (size_t)done * l->stride + (size_t)k;
+    return l->single ? (double)l->single[place] : l->wide[place];
+}
+
+static void apply_pivots(const panel* l, int done, bool absolute, double* y) {
+    for (int k = 0; k < done; k++) {
+        double d = pivot_entry(l, done, 2 * k), e = pivot_entry(l, done, 2 * k + 1);
+        if (e != 0) {
+            apply_pair(d, e, pivot_entry(l, done, 2 * k + 2), absolute, &y[k], &y[k + 1]);
             k++;
         } else if (absolute) { // where D is zero, any positive number serves
-            y[k] *= d[2 * k] == 0 ? 1 : fabs(d[2 * k]);
+            y[k] *= d == 0 ? 1 : fabs(d);
         } else {
-            y[k] *= d[2 * k];
+            y[k] *= d;
         }
     }
 }
@@ -231,7 +240,7 @@ static void backward_front(const pass* p, int s, double* y) {
     for (int i = 0; i < r->rows; i++) {
         y[i] = p->x[index[i]];
     }
-    apply_pivots(l.wide + (size_t)done * l.stride, done, p->absolute, y);
+    apply_pivots(&l, done, p->absolute, y);
     if (is_shared(p, r)) {
         shared_panel shared = {l, done, r->rows, y};
         ruga_parallel_for(done, COLUMN_CHUNK, backward_chunk, &shared);
@@ -286,9 +295,9 @@ static void take_handed_up(const ruga_ldl* f, double* x) {
 }
 
 // y = (L D L^T)^-1 b with scaled b and y, by unknown; may be the same.
-static void solve_scaled(ruga_ldl* f, bool single, bool absolute, const double* b, double* y) {
+static void solve_scaled(ruga_ldl* f, bool absolute, const double* b, double* y) {
     const ruga_ldl_symbolic* s = &f->symbolic;
-    pass p = {f, single, absolute, f->answer};
+    pass p = {f, absolute, f->answer};
     double* top = f->gather + (size_t)s->task_count * (size_t)f->widest;
     for (int k = 0; k < s->n; k++) {
         p.x[k] = b[s->order[k]];
@@ -329,7 +338,7 @@ static double find_defect(ruga_ldl* f, double* backward) {
 // One step of iterative refinement, taken back where it does not help. True where another may.
 static bool refine(ruga_ldl* f, double* residual, double* backward) {
     int n = f->symbolic.n;
-    solve_scaled(f, false, false, f->defect, f->defect);
+    solve_scaled(f, false, f->defect, f->defect);
     cblas_daxpy(n, 1, f->defect, 1, f->guess, 1);
     double before = *residual;
     *residual = find_defect(f, backward);
@@ -342,7 +351,7 @@ static bool refine(ruga_ldl* f, double* residual, double* backward) {
 }
 
 ruga_status ruga_ldl_solve(ruga_ldl* f, const double* b, double* x) {
-    enum { REFINEMENTS = 2 };
+    enum { REFINEMENTS = 2, SINGLE_REFINEMENTS = 20 };
     const double enough = 1e-12, round_off = 4e-15;
     RUGA_ASSERT(f->ready);
     int n = f->symbolic.n;
@@ -350,9 +359,10 @@ ruga_status ruga_ldl_solve(ruga_ldl* f, const double* b, double* x) {
     for (int i = 0; i < n; i++) {
         f->load[i] = b[i] * f->scale[i];
     }
-    solve_scaled(f, false, false, f->load, f->guess);
+    solve_scaled(f, false, f->load, f->guess);
     double residual = find_defect(f, &backward);
-    for (int step = 0; step < REFINEMENTS && residual > enough * size && backward > round_off; step++) {
+    int steps = f->single ? SINGLE_REFINEMENTS : REFINEMENTS;
+    for (int step = 0; step < steps && residual > enough * size && backward > round_off; step++) {
         if (!refine(f, &residual, &backward)) {
             break;
         }
@@ -363,52 +373,23 @@ ruga_status ruga_ldl_solve(ruga_ldl* f, const double* b, double* x) {
     return RUGA_OK;
 }
 
-ruga_status ruga_ldl_solve_absolute(ruga_ldl* f, const double* b, double* x) {
+// x = S (L D L^T)^-1 S b, or with |D|, as the factor stands.
+static ruga_status solve_once(ruga_ldl* f, bool absolute, const double* b, double* x) {
     RUGA_ASSERT(f->ready);
     for (int i = 0; i < f->symbolic.n; i++) {
         f->load[i] = b[i] * f->scale[i];
     }
-    solve_scaled(f, false, true, f->load, f->guess);
+    solve_scaled(f, absolute, f->load, f->guess);
     for (int i = 0; i < f->symbolic.n; i++) {
         x[i] = f->guess[i] * f->scale[i];
     }
     return RUGA_OK;
 }
 
-static void copy_task(int begin, int end, int chunk, void* context) {
-    (void)chunk;
-    ruga_ldl* f = context;
-    for (int t = begin; t < end; t++) {
-        task_memory* m = &f->memory[t];
-        for (size_t k = 0; k < m->factor_used; k++) {
-            m->single[k] = (float)m->factor[k];
-        }
-    }
-}
-
-static ruga_status copy_to_single(ruga_ldl* f) {
-    for (int t = 0; t <= f->symbolic.task_count; t++) {
-        task_memory* m = &f->memory[t];
-        RUGA_TRY(ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, (m->factor_used + 1) / 2,
-                                    sizeof(double)));
-        m->single = (float*)m->stack;
-    }
-    ruga_parallel_for(f->symbolic.task_count + 1, 1, copy_task, f);
-    f->single_ready = true;
-    return RUGA_OK;
+ruga_status ruga_ldl_solve_absolute(ruga_ldl* f, const double* b, double* x) {
+    return solve_once(f, true, b, x);
 }
 
 ruga_status ruga_ldl_solve_rough(ruga_ldl* f, const double* b, double* x) {
-    RUGA_ASSERT(f->ready);
-    if (!f->single_ready) {
-        RUGA_TRY(copy_to_single(f));
-    }
-    for (int i = 0; i < f->symbolic.n; i++) {
-        f->load[i] = b[i] * f->scale[i];
-    }
-    solve_scaled(f, true, false, f->load, f->guess);
-    for (int i = 0; i < f->symbolic.n; i++) {
-        x[i] = f->guess[i] * f->scale[i];
-    }
-    return RUGA_OK;
+    return solve_once(f, false, b, x);
 }

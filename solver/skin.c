@@ -211,7 +211,7 @@ static ruga_status create_factor(ruga_skin* skin) {
         last[i] = true;
     }
     // Without clusters CHOLMOD would do as well; the LDL^T takes half of its time (solver/README.md).
-    RUGA_TRY_DONE(ruga_factor_create(RUGA_FACTOR_LDL, &skin->kkt, nodes, start, skin->m ? last : NULL,
+    RUGA_TRY_DONE(ruga_factor_create(RUGA_FACTOR_LDL_SINGLE, &skin->kkt, nodes, start, skin->m ? last : NULL,
                                      &skin->factor));
 done:
     ruga_release(start);
