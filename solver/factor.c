@@ -62,8 +62,8 @@ ruga_status ruga_factor_create(ruga_factor_kind kind, const ruga_sparse* lower, 
     if (lower->columns > 0 && kind == RUGA_FACTOR_CHOLESKY) {
         RUGA_TRY_DONE(ruga_cholesky_create(&f->pattern, node_count, node_start, last, &f->cholesky));
     } else if (lower->columns > 0) {
-        RUGA_TRY_DONE(ruga_ldl_create(&f->pattern, node_count, node_start, last, kind == RUGA_FACTOR_LDL_SINGLE,
-                                      &f->ldl));
+        RUGA_TRY_DONE(ruga_ldl_create(&f->pattern, node_count, node_start, last,
+                                      kind == RUGA_FACTOR_LDL_SINGLE, &f->ldl));
     }
     *factor = f;
 done:
@@ -83,7 +83,8 @@ void ruga_factor_destroy(ruga_factor** factor) {
     }
 }
 
-static ruga_status numeric(ruga_factor* factor, const double* values, bool in_single, ruga_factor_info* info) {
+static ruga_status numeric(ruga_factor* factor, const double* values, bool in_single,
+                           ruga_factor_info* info) {
     if (factor->pattern.columns == 0) {
         *info = (ruga_factor_info){.success = true};
         return RUGA_OK;

@@ -258,7 +258,7 @@ static ruga_status plan_tasks(ruga_ldl* f) {
         size_t peak = m->stack_used + ruga_front_size(s->top[k], own, below);
         f->front[k].update = base;
         m->stack_used = base + update;
-        m->factor_used += own * (own + below + 2);
+        m->factor_used += ruga_ldl_stored_size((int)(own + below), (int)own);
         m->index_used += own + below;
         m->stack_peak = peak > m->stack_peak ? peak : m->stack_peak;
     }
@@ -295,7 +295,8 @@ static ruga_status finish(ruga_ldl* f, ruga_factor_info* info) {
     info->perturbed = info->zero;
     info->success = info->zero == 0;
     for (int k = 0; k < f->symbolic.count; k++) {
-        f->widest = f->front[k].rows > f->widest ? f->front[k].rows : f->widest;
+        int rows = RUGA_LDL_TILE * ruga_ldl_tiles(f->front[k].rows);
+        f->widest = rows > f->widest ? rows : f->widest;
     }
     RUGA_TRY(RUGA_RESERVE(f->gather, f->gather_capacity, (f->symbolic.task_count + 1) * f->widest));
     f->ready = true;

@@ -67,9 +67,26 @@ static inline size_t ruga_front_size(bool shared, size_t full, size_t below) {
     return ruga_update_size((int)below) + full * (full + below + 3) + ruga_front_work(shared, full, below);
 }
 
+// L of a front is stored in tiles of 4 x 4, by columns: strips of 4 columns one after another, each from the
+// tile on the diagonal down, filled up with zeros. So a solve reads it in one stream. Behind it D^-1
+// [eliminated][2].
+enum { RUGA_LDL_TILE = 4 };
+static inline int ruga_ldl_tiles(int count) {
+    return (count + RUGA_LDL_TILE - 1) / RUGA_LDL_TILE;
+}
+// Where tile (row, strip) of a front with `high` tiles of rows stands, row >= strip.
+static inline size_t ruga_ldl_tile(int high, int strip, int row) {
+    size_t s = (size_t)strip, before = s * (size_t)high - (s > 0 ? s * (s - 1) / 2 : 0);
+    return RUGA_LDL_TILE * RUGA_LDL_TILE * (before + (size_t)(row - strip));
+}
+static inline size_t ruga_ldl_stored_size(int rows, int eliminated) {
+    int strips = ruga_ldl_tiles(eliminated);
+    return ruga_ldl_tile(ruga_ldl_tiles(rows), strips, strips) + 2 * (size_t)eliminated;
+}
+
 // Storage of a task. Places in it are kept as offsets, since it moves when delayed pivots make it grow.
 typedef struct task_memory {
-    void* factor; // double or float, per front: panel [eliminated][rows], then D^-1 [eliminated][2]
+    void* factor; // double or float, per front: ruga_ldl_stored_size
     size_t factor_used, factor_capacity;
     int* index; // per front: steps of its rows, pivots first
     size_t index_used, index_capacity;
@@ -96,9 +113,9 @@ typedef struct ruga_ldl {
     int* sibling;        // [count]
     front_record* front; // [count]
     task_memory* memory; // [task_count + 1], the last one for the top
-    bool single; // L is stored in single precision
+    bool single;         // L is stored in single precision
     bool planned, in_single, ready;
-    int widest;             // rows of the largest front
+    int widest;             // rows of the largest front, in whole tiles
     double *load, *answer;  // [n] scaled, by unknown; by step
     double *defect, *guess; // [n] scaled, by unknown
     int* top_place;         // [n] number of a step that a top front eliminates, -1 = none

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// One front of the multifrontal factorisation (ldl.h), in either precision (ldl_front.h): assembled on the stack from the
-// matrix and the update matrices of its children, factored, and taken apart. Its columns of L are stored, in single
-// precision where the factor is kept so; the update matrix and the columns without a stable pivot stay on the stack.
+// One front of the multifrontal factorisation (ldl.h), in either precision (ldl_front.h): assembled on the
+// stack from the matrix and the update matrices of its children, factored, and taken apart. Its columns of L
+// are stored, in single precision where the factor is kept so; the update matrix and the columns without a
+// stable pivot stay on the stack.
 #include "solver/ldl_front.h"
 
 #include "core/parallel.h"
@@ -163,16 +164,60 @@ static void update_below(assembly* a) {
     }
 }
 
-// Copies `count` reals to places [at, at + count) of the stored factor.
-RUGA_WIDE static void store_reals(void* factor, bool single, size_t at, size_t count, const real* from) {
-    float* low = (float*)factor + (single ? at : 0);
-    double* high = (double*)factor + (single ? 0 : at);
-    for (size_t k = 0; single && k < count; k++) {
-        low[k] = (float)from[k];
+// The strip of columns [4 s, 4 s + 4) below the diagonal, of which there are `done`, into tiles `to`.
+#define DEFINE_STORE(type, store)                                                                            \
+    RUGA_WIDE static void store(const real* a, int rows, int done, type* to) {                               \
+        enum { TILE = RUGA_LDL_TILE };                                                                       \
+        for (int first = 0; first < done; first += TILE) {                                                   \
+            int columns = done - first < TILE ? done - first : TILE;                                         \
+            const real* from = a + (size_t)first * (size_t)rows;                                             \
+            for (int row = first; row < rows; row += TILE, to += TILE * TILE) {                              \
+                if (row > first && columns == TILE && rows - row >= TILE) {                                  \
+                    for (int k = 0; k < TILE; k++) {                                                         \
+                        for (int r = 0; r < TILE; r++) {                                                     \
+                            to[TILE * k + r] = (type)from[(size_t)k * (size_t)rows + (size_t)(row + r)];     \
+                        }                                                                                    \
+                    }                                                                                        \
+                    continue;                                                                                \
+                }                                                                                            \
+                for (int k = 0; k < TILE; k++) {                                                             \
+                    for (int r = 0; r < TILE; r++) {                                                         \
+                        bool below = k < columns && row + r < rows && row + r > first + k;                   \
+                        to[TILE * k + r] =                                                                   \
+                            below ? (type)from[(size_t)k * (size_t)rows + (size_t)(row + r)] : 0;            \
+                    }                                                                                        \
+                }                                                                                            \
+            }                                                                                                \
+        }                                                                                                    \
     }
-    for (size_t k = 0; !single && k < count; k++) {
-        high[k] = from[k];
+DEFINE_STORE(double, store_double)
+DEFINE_STORE(float, store_float)
+
+static void store_pivots(const ruga_front* f, const ruga_ldl* ldl, void* factor, size_t at) {
+    for (int k = 0; k < 2 * f->eliminated; k++) {
+        if (ldl->single) {
+            ((float*)factor)[at + (size_t)k] = (float)f->pivot[k];
+        } else {
+            ((double*)factor)[at + (size_t)k] = f->pivot[k];
+        }
     }
+}
+
+static ruga_status store_factor(assembly* a) {
+    const ruga_ldl* ldl = a->ldl;
+    task_memory* m = a->memory;
+    const ruga_front* f = &a->front;
+    size_t size = ruga_ldl_stored_size(f->rows, f->eliminated), begin = m->factor_used;
+    RUGA_TRY(ruga_ldl_make_room(&m->factor, &m->factor_capacity, begin + size,
+                                ldl->single ? sizeof(float) : sizeof(double)));
+    if (ldl->single) {
+        store_float(f->a, f->rows, f->eliminated, (float*)m->factor + begin);
+    } else {
+        store_double(f->a, f->rows, f->eliminated, (double*)m->factor + begin);
+    }
+    m->factor_used = begin + size;
+    store_pivots(f, ldl, m->factor, m->factor_used - 2 * (size_t)f->eliminated);
+    return RUGA_OK;
 }
 
 // Keeps L, and hands on the update matrix and the delayed columns, on the stack in the children's place.
@@ -182,10 +227,8 @@ static ruga_status store_front(assembly* a) {
     const ruga_front* f = &a->front;
     size_t update = ruga_update_size(a->below), rows = (size_t)f->rows;
     size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, height = rows - done;
-    RUGA_TRY(ruga_ldl_make_room(&m->factor, &m->factor_capacity, m->factor_used + done * (rows + 2),
-                                ldl->single ? sizeof(float) : sizeof(double)));
-    store_reals(m->factor, ldl->single, m->factor_used, done * rows, f->a);
-    store_reals(m->factor, ldl->single, m->factor_used + done * rows, 2 * done, f->pivot);
+    size_t begin = m->factor_used;
+    RUGA_TRY(store_factor(a));
     real* base = (real*)m->stack + a->base;
     memmove(base, a->update, update * sizeof(real));
     real* delayed = base + update; // below the front, whose columns move down one by one
@@ -194,14 +237,13 @@ static ruga_status store_front(assembly* a) {
     }
     memmove(delayed + late * height, f->peak + done, late * sizeof(real));
     front_record* record = &ldl->front[a->s];
-    *record = (front_record){.factor = m->factor_used,
+    *record = (front_record){.factor = begin,
                              .index = m->index_used,
                              .update = a->base,
                              .task = record->task,
                              .rows = f->rows,
                              .full = f->full,
                              .eliminated = f->eliminated};
-    m->factor_used += done * (rows + 2);
     m->index_used += rows;
     m->stack_used = a->base + update + late * (height + 1);
     return RUGA_OK;
@@ -242,4 +284,3 @@ ruga_status ruga_ldl_factor_front(ruga_ldl* f, int s) {
     invert_pivots(&a.front);
     return store_front(&a);
 }
-

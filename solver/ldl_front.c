@@ -22,7 +22,7 @@ enum { INNER = 8, OUTER = RUGA_FRONT_BLOCK };
 
 static const double threshold = 0.01;
 // A pivot below this share of the largest value that its diagonal ever had is what cancellation left.
-static const double round_off = sizeof(real) == sizeof(double) ? 1e-14 : 1e-6;
+static const double round_off = sizeof(real) == sizeof(double) ? 1e-14 : 1e-5;
 
 static real* at(const ruga_front* f, int row, int column) {
     return f->a + (size_t)column * f->rows + row;
@@ -164,8 +164,9 @@ static void eliminate_pair(ruga_front* f, int end) {
         m[i] = (real)((a * y - b * x) / determinant);
     }
     if (columns > 0) {
-        RUGA_BLAS(gemm)(CblasColMajor, CblasNoTrans, CblasTrans, below, columns, 2, -1, l, f->rows, f->work,
-                    columns, 1, at(f, k + 2, k + 2), f->rows);
+        RUGA_BLAS(gemm)
+        (CblasColMajor, CblasNoTrans, CblasTrans, below, columns, 2, -1, l, f->rows, f->work, columns, 1,
+         at(f, k + 2, k + 2), f->rows);
     }
     f->eliminated += 2;
     f->positive += determinant < 0 ? 1 : a > 0 ? 2 : 0;
@@ -232,8 +233,9 @@ static void update_tile(int tile, int stop, int chunk, void* context) {
     int t = job->begin + tile, end = job->begin + stop, pivots = f->eliminated - job->first;
     real* work = f->work + (job->shared ? (size_t)chunk * RUGA_FRONT_TILE * OUTER : 0);
     multiply_pivots(f, t, end, job->first, f->eliminated, work);
-    RUGA_BLAS(gemm)(CblasColMajor, CblasNoTrans, CblasTrans, f->rows - t, end - t, pivots, -1,
-                at(f, t, job->first), f->rows, work, end - t, 1, at(f, t, t), f->rows);
+    RUGA_BLAS(gemm)
+    (CblasColMajor, CblasNoTrans, CblasTrans, f->rows - t, end - t, pivots, -1, at(f, t, job->first), f->rows,
+     work, end - t, 1, at(f, t, t), f->rows);
     note_peaks(f, t, end);
 }
 
@@ -292,8 +294,9 @@ void ruga_front_update(const ruga_front* f, int begin, int end, real* work, real
     for (int t = begin; t < end; t += RUGA_FRONT_TILE) {
         int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
         multiply_pivots(f, f->full + t, f->full + stop, 0, f->eliminated, work);
-        RUGA_BLAS(gemm)(CblasColMajor, CblasNoTrans, CblasTrans, rows - t, stop - t, f->eliminated, -1,
-                    at(f, f->full + t, 0), f->rows, work, stop - t, 1,
-                    update + ruga_update_column(rows, t) + t, rows - t);
+        RUGA_BLAS(gemm)
+        (CblasColMajor, CblasNoTrans, CblasTrans, rows - t, stop - t, f->eliminated, -1,
+         at(f, f->full + t, 0), f->rows, work, stop - t, 1, update + ruga_update_column(rows, t) + t,
+         rows - t);
     }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// One dense front, in either precision: ldl_front.c and ldl_assembly.c are compiled for `real` = double, and by
-// ldl_single.c for `real` = float.
+// One dense front, in either precision: ldl_front.c and ldl_assembly.c are compiled for `real` = double, and
+// by ldl_single.c for `real` = float.
 #ifndef RUGA_SOLVER_LDL_FRONT_H
 #define RUGA_SOLVER_LDL_FRONT_H
 
@@ -10,10 +10,10 @@
 
 #ifdef RUGA_LDL_SINGLE
 typedef float real;
-#define RUGA_BLAS(name) cblas_s##name
-#define RUGA_BLAS_IAMAX cblas_isamax
-#define ruga_front_factor ruga_front_factor_single
-#define ruga_front_update ruga_front_update_single
+#define RUGA_BLAS(name)       cblas_s##name
+#define RUGA_BLAS_IAMAX       cblas_isamax
+#define ruga_front_factor     ruga_front_factor_single
+#define ruga_front_update     ruga_front_update_single
 #define ruga_ldl_factor_front ruga_ldl_factor_front_single
 #else
 typedef double real;

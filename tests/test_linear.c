@@ -503,7 +503,7 @@ static void rough_solve_is_symmetric_and_near_the_solution(void** state) {
     ruga_factor_info info;
     kkt(&s, &firm);
     int n = s.a.rows, primal = 3 * firm.side * firm.side;
-    ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL, &info);
+    ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL_SINGLE, &info);
     double *b = random_vector(n, 1), *c = random_vector(n, 2), *x = random_vector(n, 3), *y = random_vector(n, 4);
     memset(b + primal, 0, (size_t)(n - primal) * sizeof *b);
     memset(c + primal, 0, (size_t)(n - primal) * sizeof *c);
