@@ -40,13 +40,16 @@ static ruga_status write_page(const ruga_arguments* arguments, int count, ruga_p
 static int take_series(const ruga_panels* panels, const ruga_panel* panel, ruga_plot_series* series) {
     for (int k = 0; k < panel->series_count; k++) {
         const ruga_panel_series* s = &panel->series[k];
+        bool again = k >= RUGA_PLOT_COLORS; // in a colour that was there before
         series[k] = (ruga_plot_series){.name = s->name,
                                        .count = panels->frame_count,
                                        .x = panels->time,
                                        .y = s->y,
                                        .low = s->low,
                                        .high = s->high,
-                                       .style = panels->frame_count > 60 ? RUGA_PLOT_LINE : RUGA_PLOT_BOTH};
+                                       .style = panels->frame_count <= 60 ? RUGA_PLOT_BOTH
+                                                : again                   ? RUGA_PLOT_DASHED
+                                                                          : RUGA_PLOT_LINE};
     }
     return panel->series_count;
 }

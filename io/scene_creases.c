@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "crease/flat.h"
+#include "io/file_name.h"
 #include "io/fold.h"
 #include "io/result.h"
 #include "io/scene_read.h"
@@ -17,19 +18,14 @@
 static const double FLAT = 1e-6;          // rad off half a turn
 static const double SVG_TOLERANCE = 1e-3; // of a drawing's size, for curves
 
-static bool ends_with(const char* name, const char* end) {
-    size_t length = strlen(name), tail = strlen(end);
-    return length > tail && strcmp(name + length - tail, end) == 0;
-}
-
 bool ruga_scene_is_pattern(const char* name) {
-    return ends_with(name, ".fold") || ends_with(name, ".svg");
+    return ruga_file_name_ends(name, ".fold") || ruga_file_name_ends(name, ".svg");
 }
 
 // A file that is not there is the scene's mistake, not the disk's.
 ruga_status ruga_scene_read_pattern(const char* path, int frame, ruga_crease_pattern* pattern) {
-    ruga_status status = ends_with(path, ".svg") ? ruga_svg_read(path, 1, SVG_TOLERANCE, pattern)
-                                                 : ruga_fold_read(path, frame, 1, pattern);
+    ruga_status status = ruga_file_name_ends(path, ".svg") ? ruga_svg_read(path, 1, SVG_TOLERANCE, pattern)
+                                                           : ruga_fold_read(path, frame, 1, pattern);
     return status == RUGA_IO ? ruga_fail(RUGA_BAD_INPUT, "%s", ruga_last_error()) : status;
 }
 
@@ -137,6 +133,9 @@ static ruga_status add_pattern(loader* l, const ruga_scene_crease* crease, const
     RUGA_TRY_DONE(ruga_crease_pattern_curves(&pattern, &(ruga_curve){0}, false, &curves));
     if (curves.count == 0) {
         status = ruga_fail(RUGA_BAD_INPUT, "%s has no creases", file);
+        for (int i = 0; i < pattern.note_count; i++) { // where they went
+            status = ruga_fail(status, "%s; %s", ruga_last_error(), pattern.note[i]);
+        }
         goto done;
     }
     RUGA_TRY_DONE(add_lines(l, crease, file, &pattern, &curves, l->scene->mesh_unit));

@@ -265,6 +265,9 @@ static ruga_status take_line(const double from[2], const double to[2], void* con
     const double* const end[2] = {from, to};
     for (int k = 0; k < 2; k++) {
         for (int i = 0; i < 2; i++) {
+            if (!isfinite(end[k][i])) {
+                return fail(r, "the numbers of this shape are too large to be drawn");
+            }
             r->low[i] = fmin(r->low[i], end[k][i]);
             r->high[i] = fmax(r->high[i], end[k][i]);
         }
@@ -281,11 +284,20 @@ static ruga_status take_line(const double from[2], const double to[2], void* con
     return ruga_crease_pattern_add_edge(r->pattern, v, v + 1, r->assignment, r->angle);
 }
 
-static double number_of(const reader* r, const char* name) {
-    ruga_slice text = ruga_xml_attribute(r->tag, name);
-    double value = 0;
-    const char* p = text.at;
-    return text.at && ruga_svg_number(&p, text.at + text.length, &value) ? value : 0;
+// Attributes that are lengths, 0 where missing: names [count], value [count].
+static ruga_status read_lengths(const reader* r, int count, const char* const* names, double* value) {
+    for (int i = 0; i < count; i++) {
+        ruga_slice text = ruga_xml_attribute(r->tag, names[i]);
+        const char *p = text.at, *end = p ? p + text.length : p;
+        value[i] = 0;
+        bool good = !p || ruga_svg_number(&p, end, &value[i]);
+        ruga_slice unit = p ? trim(p, end) : text;
+        if (!good || (unit.length > 0 && !ruga_slice_is(unit, "px"))) {
+            return ruga_fail(RUGA_BAD_INPUT, "%s:%d: %s=\"%.40s\" is not a number without a unit or in px",
+                             r->tag->path, r->tag->line, names[i], text.at);
+        }
+    }
+    return RUGA_OK;
 }
 
 static ruga_status draw_listed_points(const reader* r, const ruga_svg_pen* pen, bool closed) {
@@ -333,21 +345,23 @@ static ruga_status draw_shape(reader* r, const ruga_svg_pen* pen) {
     if (ruga_slice_is(name, "polyline") || ruga_slice_is(name, "polygon")) {
         return draw_listed_points(r, pen, ruga_slice_is(name, "polygon"));
     }
+    double v[4];
     if (ruga_slice_is(name, "line")) {
-        const double p[2][2] = {{number_of(r, "x1"), number_of(r, "y1")},
-                                {number_of(r, "x2"), number_of(r, "y2")}};
+        static const char* const ends[] = {"x1", "y1", "x2", "y2"};
+        RUGA_TRY(read_lengths(r, 4, ends, v));
+        const double p[2][2] = {{v[0], v[1]}, {v[2], v[3]}};
         return ruga_svg_draw_points(pen, 2, p, false);
     }
     if (ruga_slice_is(name, "rect")) {
-        double x = number_of(r, "x"), y = number_of(r, "y"), w = number_of(r, "width"),
-               h = number_of(r, "height");
-        const double p[4][2] = {{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}};
+        static const char* const box[] = {"x", "y", "width", "height"};
+        RUGA_TRY(read_lengths(r, 4, box, v));
+        const double right = v[0] + v[2], low = v[1] + v[3];
+        const double p[4][2] = {{v[0], v[1]}, {right, v[1]}, {right, low}, {v[0], low}};
         return ruga_svg_draw_points(pen, 4, p, true);
     }
-    bool circle = ruga_slice_is(name, "circle");
-    const double center[2] = {number_of(r, "cx"), number_of(r, "cy")};
-    const double radius[2] = {number_of(r, circle ? "r" : "rx"), number_of(r, circle ? "r" : "ry")};
-    return ruga_svg_draw_ellipse(pen, center, radius);
+    static const char* const round[2][4] = {{"cx", "cy", "rx", "ry"}, {"cx", "cy", "r", "r"}};
+    RUGA_TRY(read_lengths(r, 4, round[ruga_slice_is(name, "circle")], v));
+    return ruga_svg_draw_ellipse(pen, v, v + 2);
 }
 
 static bool is_one_of(ruga_slice name, const char* const* list) {

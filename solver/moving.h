@@ -15,7 +15,6 @@ typedef struct ruga_moving ruga_moving;
 ruga_status ruga_moving_create(const ruga_model* model, ruga_skin* skin, ruga_moving** moving);
 void ruga_moving_destroy(ruga_moving** moving);
 // The shape and, with its velocity, the motion that the model starts with; x [nodes][3] is SET.
-// RUGA_BAD_INPUT where panels cannot be folded as model.start says.
 ruga_status ruga_moving_start(ruga_moving* moving, double* x);
 // A frame from `time` on.
 ruga_status ruga_moving_step(ruga_moving* moving, double time, double* x, ruga_report* report);

@@ -239,6 +239,39 @@ static void the_step_is_of_second_order_and_of_first_with_damping(void** state) 
     }
 }
 
+// Within a frame the undamped step leaves out a projection that the next one makes as well.
+static void a_frame_is_its_steps_one_by_one(void** state) {
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        motion m[2];
+        ruga_dynamic_report report = {0}, own = {0};
+        for (int k = 0; k < 2; k++) {
+            cut_sheet(&m[k], 4, CROSS, kind % 2);
+            choose_kind(&m[k], kind < 2 ? 0 : 3);
+            m[k].def.damping = kind % 2 ? 1e-3 : 0;
+            m[k].def.drag = 2;
+            m[k].def.gravity[2] = -9.81;
+            for (int n = 0; n < m[k].nodes; n++) {
+                hold(&m[k], n, m[k].x[3 * n] < 1e-9);
+            }
+            create_motion(&m[k]);
+            ruga_dynamic_start(m[k].dynamic, m[k].x, m[k].v);
+        }
+        assert_ok(ruga_dynamic_advance(m[0].dynamic, NULL, 0, 0.05, m[0].x, m[0].v, &report));
+        int count = report.substeps;
+        assert_true(count > 10 && report.halvings == 0);
+        for (int s = 0; s < count; s++) {
+            ruga_dynamic_step(m[1].dynamic, NULL, 0.05 * s / count, 0.05 / count, m[1].x, m[1].v, &own);
+        }
+        for (int i = 0; i < 3 * m[0].nodes; i++) {
+            assert_near(m[0].x[i], m[1].x[i], 1e-11 * EDGE);
+            assert_near(m[0].v[i], m[1].v[i], 1e-9);
+        }
+        clear_motion(&m[0]);
+        clear_motion(&m[1]);
+    }
+}
+
 static void free_fall_is_exact(void** state) {
     (void)state;
     motion m;
@@ -584,6 +617,7 @@ int main(void) {
         cmocka_unit_test(momenta_are_conserved_in_free_flight),
         cmocka_unit_test(energy_does_not_drift_and_damping_only_takes_it),
         cmocka_unit_test(the_step_is_of_second_order_and_of_first_with_damping),
+        cmocka_unit_test(a_frame_is_its_steps_one_by_one),
         cmocka_unit_test(free_fall_is_exact),
         cmocka_unit_test(a_panel_on_its_crease_swings_as_a_pendulum),
         cmocka_unit_test(a_bar_and_a_drum_have_their_frequencies),

@@ -240,8 +240,8 @@ typedef struct ruga_crease_def {
     double hardening; // >= 0: growth of the yield angle for each rad of plastic turning
 } ruga_crease_def;
 
-// How a skin in dynamic motion begins: folded flat panels, then rolled, with a velocity where nothing holds
-// it.
+// How a free skin begins: folded flat panels; in dynamic motion then rolled, with a velocity where nothing
+// holds it.
 typedef struct ruga_start_def {
     double fold; // part of the creases' rest angles at time 0 by which panels are turned; 0 = as the mesh is
     double
