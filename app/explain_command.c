@@ -4,6 +4,7 @@
 // ruga explain: what a scene means, before any solve.
 #include "app/command.h"
 #include "app/console.h"
+#include "app/creases.h"
 #include "app/estimate.h"
 #include "lattice/motion.h"
 #include "shell/shell.h"
@@ -39,12 +40,12 @@ static void judge(facts* f) {
     if (f->refused) {
         (void)snprintf(
             f->judged[0], sizeof f->judged[0],
-            "%.2g edges per wavelength are below %g, run will refuse this: remesh with edge %.3g mm, or "
+            "%.3g edges per wavelength are below %g, run will refuse this: remesh with edge %.3g mm, or "
             "set solver.allow_coarse",
             f->edges, edges_least, good);
     } else if (f->edges < edges_good) {
         (void)snprintf(f->judged[0], sizeof f->judged[0],
-                       "%.2g edges per wavelength are below %g: remesh with edge %.3g mm", f->edges,
+                       "%.3g edges per wavelength are below %g: remesh with edge %.3g mm", f->edges,
                        edges_good, good);
     }
     ruga_judge_handles(f->model, f->judged[1], sizeof f->judged[1]);
@@ -52,7 +53,7 @@ static void judge(facts* f) {
 
 static ruga_status derive(const ruga_arguments* arguments, facts* f) {
     const ruga_model_def* def = &f->scene->def;
-    f->estimate = ruga_estimate_model(f->model);
+    RUGA_TRY(ruga_estimate_model(f->model, &f->estimate));
     f->strain = f->amplitude = f->edges = NAN;
     if (!def->has_interior) {
         return RUGA_OK;
@@ -132,7 +133,7 @@ static void say_sizes(const ruga_arguments* arguments, const facts* f) {
     ruga_say(arguments, "    %-28s %lld of the skin, %lld of the interior, %lld constraints\n",
              "degrees of freedom", (long long)e->skin_unknowns, (long long)e->interior_unknowns,
              (long long)e->constraints);
-    ruga_say(arguments, "    %-28s about %.2g MB\n", "memory", e->bytes / 1e6);
+    ruga_say(arguments, "    %-28s about %.3g MB\n", "memory", e->bytes / 1e6);
     ruga_say(arguments, "    %-28s roughly %s a frame, %s for %d frames\n", "time", frame, run, m->frames);
 }
 
@@ -258,6 +259,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     } else {
         say_all(arguments, &f);
     }
+    ruga_warn_of_creases(arguments, f.model);
     for (int i = 0; i < 2; i++) {
         if (*f.judged[i] && !(f.refused && i == 0)) {
             ruga_warn(arguments, "%s", f.judged[i]);

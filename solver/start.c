@@ -18,6 +18,7 @@
 #include <string.h>
 
 static const double MISFIT = 1e-9; // edges
+static const double ROLLED = 0.25; // edges: rolled copies of one place part a little
 
 // Area, and means of rest and folded places over the material.
 static double find_means(const ruga_mesh* rest, const double* y, double mean[2][3]) {
@@ -97,7 +98,8 @@ static ruga_status fold(const ruga_model* model, double* x) {
     for (int h = 0; h < creases->segment_count; h++) {
         turn[creases->segment[h]] = turn_of(model, h);
     }
-    ruga_status status = ruga_cut_fold(&creases->raster, &creases->cut, turn, MISFIT * model->mean_edge, x);
+    double cone = model->start.cone, misfit = (cone > 0 ? ROLLED : MISFIT) * model->mean_edge;
+    ruga_status status = ruga_cut_fold(&creases->raster, &creases->cut, turn, cone, misfit, x);
     ruga_release(turn);
     return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "start.fold") : status;
 }
@@ -113,12 +115,10 @@ ruga_status ruga_start_create(ruga_model* model) {
     memcpy(model->started, model->mesh.position, n * sizeof *model->started);
     if (folded) {
         RUGA_TRY(fold(model, model->started));
-    }
-    if (start->cone > 0) {
+    } else {
         ruga_roll_cone(model->mesh.vertex_count, start->cone, model->started);
-        return RUGA_OK;
     }
-    return lay(model, model->started);
+    return start->cone > 0 ? RUGA_OK : lay(model, model->started);
 }
 
 const double* ruga_start_shape(const ruga_model* model) {

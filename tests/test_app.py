@@ -26,6 +26,23 @@ except ImportError:
 RUGA, BUILD, SOURCE = (os.path.abspath(path) for path in sys.argv[1:4])
 
 # The smallest sheet that wrinkles: 9 edges per wavelength, 10 frames of about 50 ms.
+# In motion, with creases that yield and one that comes later.
+MOVING = """\
+mesh: {make: {shape: sheet, size: [40 cm, 30 cm], cells: [12, 9], pattern: diagonal}}
+skin: {model: springs, motion: dynamic, thickness: 1 mm, young: 0.5 MPa, density: 300 kg/m^3, damping: 0.1 ms}
+interior: none
+creases:
+  - curve: {polyline: [[-0.5 m, 0.01 m, 0 m], [0.5 m, -0.013 m, 0 m]]}
+    hinge: {stiffness: 1 mN, rest: 60 deg, yield: 10 deg, rate: 5 1/s, hardening: 0.1}
+  - curve: {polyline: [[-0.19 m, -0.5 m, 0 m], [-0.199 m, 0.5 m, 0 m]]}
+    hinge: {stiffness: 2 mN, rest: 90 deg, yield: 30 deg}
+    start: 0.25 s
+time: {step: 40 ms, frames: 12}
+gravity: [0, 0, -9.81]
+handles:
+  - {region: {box: [[0.19, -1, -1], [1, 1, 1]]}, move: {translate: [0, 0, 5 cm]}, during: [0 s, 0.2 s]}
+"""
+
 SCENE = """\
 mesh:       {make: {shape: sheet, size: [14 cm, 4 cm], edge: 4.2 mm}}
 skin:       {thickness: 2 mm, young: 40 MPa}
@@ -264,6 +281,9 @@ class Scenes(Case):
         stronger = self.json("explain", self.scene, "--strain", "10%")
         self.assertGreater(stronger["amplitude"], facts["amplitude"])
         self.assertRegex(self.ruga("explain", self.scene).stdout, r"skin.density +900 kg/m\^3 +\(default\)")
+        cloth = self.write("cloth.yaml", "mesh: {make: {shape: sheet, size: [20 cm, 20 cm]}}\ninterior: none\n"
+                           "skin: {motion: dynamic}\n")
+        self.assertGreater(self.json("explain", cloth)["seconds"], 0)
 
     def test_a_coarse_mesh_is_warned_of_and_then_refused_but_explained(self):
         coarse = ("--set", "mesh.make.edge=7 mm")
@@ -437,6 +457,23 @@ time:       {frames: 1}
         self.ruga("run", scene, "-o", "coupled.h5")
         self.kill_and_resume(scene, 10, self.path("coupled.h5"))
 
+    def test_creases_along_the_ridges_of_a_result(self):
+        bent = self.write("bent.yaml", """\
+mesh:     {make: {shape: sheet, size: [20 cm, 12 cm], edge: 8 mm}}
+skin:     {thickness: 0.3 mm, young: 1 GPa}
+interior: none
+handles:
+  - {region: {plane: {center: [-9.9 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}
+  - {region: {plane: {center: [9.9 cm, 0, 0], normal: [1, 0, 0]}}, move: {translate: [-3 cm, 0, 1 cm]}, during: [0 s, 60 ms]}
+time:     {frames: 3}
+""")
+        self.ruga("run", bent, "-o", "bent.h5")
+        ridge = "creases=[{curve: {stress: {result: bent.h5, from: bending}}, hinge: {rest: assigned}}]"
+        facts = self.json("explain", bent, "--set", ridge, "--set", "mesh.make.edge=7 mm")  # other triangles
+        self.assertEqual(facts["creases"]["curves"], 1)
+        self.refused("explain", bent, "--set", ridge, "--set", "mesh.make={shape: pillow, size: 20 cm}", "--set",
+                     "handles=[]", saying=r"creases\.0\.curve: bent\.h5 has another surface at rest")
+
     def test_a_shell_that_nothing_holds_stays_where_it_is_or_is_refused(self):
         scene = self.write("free.yaml", """\
 mesh:     {make: {shape: sphere, size: 20 cm, edge: 2 cm}}
@@ -466,6 +503,15 @@ time:     {frames: 1}
         self.write("two.obj", text)
         self.ruga("run", scene, "-o", "free.h5", "--force", "--set", "mesh={file: two.obj}", "--set",
                   "handles=[{region: {sphere: {radius: 20 cm}}, fix: true}]")
+
+    def test_neither_kills_nor_threads_cost_a_bit_of_cloth_in_motion(self):
+        scene = self.write("moving.yaml", MOVING)
+        self.ruga("run", scene, "-o", "moving.h5", "--threads", 1)
+        self.ruga("run", scene, "-o", "threads.h5", "--threads", 2)
+        self.assert_same(self.path("moving.h5"), self.path("threads.h5"))
+        self.kill_and_resume(scene, 4, self.path("moving.h5"))
+        self.refused("run", scene, "-o", "wild.h5", "--quiet", "--set", "gravity=[0, 0, -1e9]",
+                     saying="cannot be stepped")
 
     def test_creases_from_a_pattern(self):
         self.write("cross.fold", CROSS)

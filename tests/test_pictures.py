@@ -152,16 +152,21 @@ class Pictures(unittest.TestCase):
             return edit
 
         os.makedirs(self.path("out"))
-        commands = (("render", *SIZE, "-o", "out/a_%d.png"), ("render", *SIZE, "--color", "displacement", "-o", "out/b.png"),
+        commands = (("render", *SIZE, "-o", "out/a_%d.png"),
+                    ("render", *SIZE, "--color", "displacement", "-o", "out/b.png"),
                     ("plot", "-o", "out/c.svg"), ("measure", "--json"), ("view", "-o", "out/d.html"),
                     ("export", "-o", "out/e.obj"), ("export", "-o", "out/f.glb"), ("measure", "--curve", "out/g.csv"))
         for value, name, some in ((numpy.nan, "position", commands), (1e300, "position", commands[:1] + commands[4:5]),
                                   (-numpy.inf, "embedded", commands[1:5])):
             change("odd.h5", put(value, name="shell/" + name))
             for command, *words in some:
-                self.refused(command, "odd.h5", *words, saying=r"frame 3: coordinate z of vertex 7")
+                self.refused(command, "odd.h5", *words, saying=r"frame 3.*: coordinate z of vertex 7 is")
                 self.assertEqual([f for f in os.listdir(self.path("out")) if not f.startswith("a_")], [], command)
             self.ruga("render", "odd.h5", *SIZE, "--frame", "2", "-o", "whole.png")  # another frame is shown
+        change("odd.h5", put(numpy.nan, name="mesh/rest", where=(7, 2)))
+        self.refused("measure", "odd.h5", saying="/mesh/rest: coordinate z of vertex 7 is nan")
+        change("odd.h5", put(numpy.nan, name="frames/time", where=1))  # of the last one: it is not there yet
+        self.refused("export", "odd.h5", "-o", "out/f.glb", saying="frame 1: its time is nan")
         for edit, some in ((put(1e20), commands[:2]), (put(0.0, ...), commands[:3]), (keep_one, commands)):
             change("odd.h5", edit)
             for command, *words in some:
@@ -189,7 +194,8 @@ class Pictures(unittest.TestCase):
             self.ruga(words[0], folder + "/erste Falte ö.h5", *words[1:], "-o", f"{folder}/{name}")
             self.assertGreater(len(self.read(f"{folder}/{name}")), 500, name)
         self.assertIn("erste Falte ö.h5", self.read(folder + "/Netz é.xdmf").decode())
-        self.ruga("run", "sheet.yaml", "-o", folder + "/Lauf ö.h5", "--frames", "1", "--quiet", "--preview", folder + "/Bilder ö")
+        self.ruga("run", "sheet.yaml", "-o", folder + "/Lauf ö.h5", "--frames", "1", "--quiet", "--preview",
+                  folder + "/Bilder ö")
         self.assertEqual(len(os.listdir(self.path(folder + "/Bilder ö"))), 2)
 
     def test_frames_and_turntables_have_numbered_pictures(self):
@@ -243,6 +249,10 @@ class Pictures(unittest.TestCase):
                 f"{k},{k * k},minimum,{3 * k}\n" for k in (1, 2, 4)))
         self.ruga("plot", "t.csv", "-o", "t.svg")
         self.ruga("plot", "t.csv", "--x", "young", "--what", "thickness+wavelength,wavelength", "--log", "xy", "-o", "u.svg")
+        with open(self.path("wide.csv"), "w", encoding="utf-8") as file:  # more than a page holds
+            file.write(",".join(f"c{k}" for k in range(20)) + "\n" + "".join(
+                ",".join(str(row * (k % 3)) for k in range(20)) + "\n" for row in (1, 2, 3)))
+        self.assertIn("7 of its 19 columns", self.ruga("plot", "wide.csv", "--x", "c1", "-o", "w.svg").stderr)
         self.refused("plot", "t.csv", "--what", "wavelengt", "-o", "v.svg", saying="did you mean wavelength")
         self.refused("plot", "t.csv", "--what", "outcome", "-o", "v.svg", saying="no point to draw")
         self.refused("plot", "none.csv", "-o", "v.svg", saying="cannot be read")
