@@ -81,6 +81,7 @@ const ruga_key ruga_keys[] = {
              "Number of quads along X and Y, or around and across, in place of `edge`."),
     CHOICE("mesh.make.pattern", SOURCE(make.pattern), "equilateral", "equilateral|diagonal|alternating",
            "How the triangles lie."),
+    INTEGERS("mesh.frame", 1, SOURCE(frame), "0", 0, 1000000, "The frame of a FOLD file."),
     OTHER("mesh.unit", RUGA_KEY_UNIT, SOURCE(unit), "m", "m",
           "The unit of length of the file's coordinates, such as mm or inch. A result above 100 m or below 1 "
           "mm "

@@ -9,6 +9,7 @@
 #include "core/vec3.h"
 #include "mesh/doctor.h"
 #include "shell/shell.h"
+#include "solver/anchor.h"
 #include "solver/start.h"
 
 #include <math.h>
@@ -90,6 +91,9 @@ static ruga_status check_material(const ruga_model_def* def) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
     }
     RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
+    if (def->start.fold != 0 && def->crease_count == 0) {
+        return ruga_fail(RUGA_BAD_INPUT, "start.fold: there are no creases to fold about");
+    }
     RUGA_TRY(check_motion(def));
     RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation",
                      s->relaxation, "above 0"));
@@ -171,7 +175,7 @@ static ruga_status check_mesh(const ruga_model* model) {
 
 static ruga_status copy_handles(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(RUGA_NEW_ZERO(model->handles, def->handle_count + 1));
-    model->handles[def->handle_count] = ruga_default_handle_def(); // of hold_in_space
+    model->handles[def->handle_count] = ruga_default_handle_def(); // of solver/anchor.c
     model->handle_count = def->handle_count;
     for (int i = 0; i < def->handle_count; i++) {
         ruga_handle_def* handle = &model->handles[i];
@@ -322,50 +326,6 @@ static void hold_selected(ruga_model* model, int h, int count, const int* select
     hold_pieces(model, h, in);
 }
 
-// The uncut triangle nearest to the middle; any where all are cut.
-static int middle_triangle(const ruga_model* model) {
-    double nearest = INFINITY;
-    int best = 0;
-    for (int p = 0; p < model->mesh.triangle_count; p++) {
-        const int* t = model->mesh.triangle + 3 * (size_t)p;
-        double off[3] = {-model->center[0], -model->center[1], -model->center[2]};
-        for (int i = 0; i < 3; i++) {
-            ruga_add_scaled(1.0 / 3, model->mesh.position + 3 * (size_t)t[i], off);
-        }
-        double far = ruga_norm(off) + (model->creases->cut.piece[p].fraction < 1 ? model->extent : 0);
-        if (far < nearest) {
-            nearest = far;
-            best = p;
-        }
-    }
-    return best;
-}
-
-static int largest_component(const double v[3]) {
-    return fabs(v[0]) >= fabs(v[1]) && fabs(v[0]) >= fabs(v[2]) ? 0 : fabs(v[1]) >= fabs(v[2]) ? 1 : 2;
-}
-
-// A folding sheet that nothing holds would drift and turn: six components of one triangle are held, which
-// takes no force. Its first corner; of the second what is across the edge between them; of the third the
-// height.
-static void hold_in_space(ruga_model* model) {
-    const int* t = model->mesh.triangle + 3 * (size_t)middle_triangle(model);
-    const double* x[3];
-    double edge[3], normal[3];
-    for (int i = 0; i < 3; i++) {
-        x[i] = ruga_start_shape(model) + 3 * (size_t)t[i];
-    }
-    ruga_subtract(x[1], x[0], edge);
-    ruga_triangle_normal(x[0], x[1], x[2], normal);
-    int along = largest_component(edge), up = largest_component(normal);
-    for (int axis = 0; axis < 3; axis++) {
-        model->skin_handle[3 * (size_t)t[0] + (size_t)axis] = model->handle_count;
-        model->skin_handle[3 * (size_t)t[1] + (size_t)axis] = axis == along ? -1 : model->handle_count;
-        model->skin_handle[3 * (size_t)t[2] + (size_t)axis] = axis == up ? model->handle_count : -1;
-    }
-    model->any_skin_held = true;
-}
-
 // Which handle holds which component of the skin; the first one wins.
 static ruga_status build_skin_holds(ruga_model* model) {
     ruga_status status = RUGA_OK;
@@ -388,10 +348,6 @@ static ruga_status build_skin_holds(ruga_model* model) {
             goto done;
         }
         hold_selected(model, h, count, selected, in);
-    }
-    if (model->creases && !model->has_interior && !model->any_skin_held &&
-        model->skin.motion != RUGA_SKIN_DYNAMIC) {
-        hold_in_space(model);
     }
 done:
     ruga_release(selected);
@@ -516,7 +472,7 @@ static ruga_status build_coupling(ruga_model* model) {
     if (model->edges < 3 && !model->solver.allow_coarse) {
         return ruga_fail(
             RUGA_BAD_INPUT,
-            "the mesh has %.2g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
+            "the mesh has %.3g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
             "least 3 are needed and 8 are good: remesh with edge %.3g m, or set solver.allow_coarse",
             model->edges, model->mean_edge, model->edges_wavelength, model->edges_wavelength / 8);
     }
@@ -609,6 +565,9 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
         }
     } else {
         model->solves_skin = model->skin.motion != RUGA_SKIN_DYNAMIC;
+        if (model->skin.motion == RUGA_SKIN_STATIC || (model->solves_skin && model->creases)) {
+            RUGA_TRY_DONE(ruga_model_anchor(model));
+        }
     }
     model->seam = model->clusters.count;
     if (model->creases) {

@@ -26,10 +26,7 @@ static double find_means(const ruga_mesh* rest, const double* y, double mean[2][
     memset(mean, 0, 2 * sizeof *mean);
     for (int f = 0; f < rest->triangle_count; f++) {
         const int* t = rest->triangle + 3 * (size_t)f;
-        double n[3];
-        ruga_triangle_normal(rest->position + 3 * (size_t)t[0], rest->position + 3 * (size_t)t[1],
-                             rest->position + 3 * (size_t)t[2], n);
-        double part = 0.5 * ruga_norm(n);
+        double part = ruga_mesh_triangle_area(rest, f);
         area += part;
         for (int i = 0; i < 3; i++) {
             ruga_add_scaled(part / 3, rest->position + 3 * (size_t)t[i], mean[0]);
@@ -47,9 +44,7 @@ static void nearest_rotation(const ruga_mesh* rest, const double* y, const doubl
     double f[9] = {0}, u[9], s[3], v[9];
     for (int k = 0; k < rest->triangle_count; k++) {
         const int* t = rest->triangle + 3 * (size_t)k;
-        double n[3], d[2][4][3] = {{{0}}}; // of each corner, and their sum
-        ruga_triangle_normal(rest->position + 3 * (size_t)t[0], rest->position + 3 * (size_t)t[1],
-                             rest->position + 3 * (size_t)t[2], n);
+        double area = ruga_mesh_triangle_area(rest, k), d[2][4][3] = {{{0}}}; // of each corner, and their sum
         for (int i = 0; i < 3; i++) {
             ruga_subtract(rest->position + 3 * (size_t)t[i], mean[0], d[0][i]);
             ruga_subtract(y + 3 * (size_t)t[i], mean[1], d[1][i]);
@@ -58,7 +53,7 @@ static void nearest_rotation(const ruga_mesh* rest, const double* y, const doubl
         }
         for (int i = 0; i < 4; i++) {
             for (int e = 0; e < 9; e++) {
-                f[e] += ruga_norm(n) / 24 * d[0][i][e / 3] * d[1][i][e % 3];
+                f[e] += area / 12 * d[0][i][e / 3] * d[1][i][e % 3];
             }
         }
     }

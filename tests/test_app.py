@@ -281,6 +281,9 @@ class Scenes(Case):
         stronger = self.json("explain", self.scene, "--strain", "10%")
         self.assertGreater(stronger["amplitude"], facts["amplitude"])
         self.assertRegex(self.ruga("explain", self.scene).stdout, r"skin.density +900 kg/m\^3 +\(default\)")
+        cloth = self.write("cloth.yaml", "mesh: {make: {shape: sheet, size: [20 cm, 20 cm]}}\ninterior: none\n"
+                           "skin: {motion: dynamic}\n")
+        self.assertGreater(self.json("explain", cloth)["seconds"], 0)
 
     def test_a_coarse_mesh_is_warned_of_and_then_refused_but_explained(self):
         coarse = ("--set", "mesh.make.edge=7 mm")
@@ -453,6 +456,53 @@ time:       {frames: 1}
         scene = self.write("coupled.yaml", COUPLED)
         self.ruga("run", scene, "-o", "coupled.h5")
         self.kill_and_resume(scene, 10, self.path("coupled.h5"))
+
+    def test_creases_along_the_ridges_of_a_result(self):
+        bent = self.write("bent.yaml", """\
+mesh:     {make: {shape: sheet, size: [20 cm, 12 cm], edge: 8 mm}}
+skin:     {thickness: 0.3 mm, young: 1 GPa}
+interior: none
+handles:
+  - {region: {plane: {center: [-9.9 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}
+  - {region: {plane: {center: [9.9 cm, 0, 0], normal: [1, 0, 0]}}, move: {translate: [-3 cm, 0, 1 cm]}, during: [0 s, 60 ms]}
+time:     {frames: 3}
+""")
+        self.ruga("run", bent, "-o", "bent.h5")
+        ridge = "creases=[{curve: {stress: {result: bent.h5, from: bending}}, hinge: {rest: assigned}}]"
+        facts = self.json("explain", bent, "--set", ridge, "--set", "mesh.make.edge=7 mm")  # other triangles
+        self.assertEqual(facts["creases"]["curves"], 1)
+        self.refused("explain", bent, "--set", ridge, "--set", "mesh.make={shape: pillow, size: 20 cm}", "--set",
+                     "handles=[]", saying=r"creases\.0\.curve: bent\.h5 has another surface at rest")
+
+    def test_a_shell_that_nothing_holds_stays_where_it_is_or_is_refused(self):
+        scene = self.write("free.yaml", """\
+mesh:     {make: {shape: sphere, size: 20 cm, edge: 2 cm}}
+skin:     {thickness: 1 mm, young: 1 MPa}
+interior: none
+handles:  [{region: all, press: -100 Pa}]
+time:     {frames: 1}
+""")
+        self.ruga("run", scene, "-o", "free.h5")  # exit status 0: a minimum, not a saddle for its rigid motions
+        # Radius R p R (1 - nu) / (2 E h) more, to first order.
+        volume = [self.json("measure", "free.h5", "--frame", k)["volume"] for k in (0, 1)]
+        self.assertAlmostEqual((volume[1] / volume[0]) ** (1 / 3) - 1, 0.0035, delta=2e-4)
+        self.ruga("run", scene, "-o", "free.h5", "--force", "--set", "handles=[]")
+        self.ruga("run", scene, "-o", "free.h5", "--force", "--set", "handles=[{region: all, fix: [z]}]")
+        self.ruga("run", scene, "-o", "free.h5", "--force", "--set", "handles=[{region: {vertices: [3]}, fix: true}]")
+        saying = "has no equilibrium"
+        self.refused("run", scene, "-o", "x.h5", "--set", "handles=[]", "--set", "gravity=[0, 0, -1]", saying=saying)
+        self.refused("explain", scene, "--set", "handles=[{region: all, force: [1 N, 0, 0]}]", saying=saying)
+        # Two balls, of which one is held.
+        self.ruga("make", "sphere", "--size", "20cm", "--edge", "4cm", "-o", "a.obj")
+        with open(self.path("a.obj"), encoding="utf-8") as file:
+            lines = [line.split() for line in file if line[:2] in ("v ", "f ")]
+        vertices = [line[1:] for line in lines if line[0] == "v"]
+        faces = [[int(word.split("/")[0]) for word in line[1:]] for line in lines if line[0] == "f"]
+        text = "".join(f"v {float(x) + dx} {y} {z}\n" for dx in (0, 1) for x, y, z in vertices)
+        text += "".join("f " + " ".join(str(v + k * len(vertices)) for v in face) + "\n" for k in (0, 1) for face in faces)
+        self.write("two.obj", text)
+        self.ruga("run", scene, "-o", "free.h5", "--force", "--set", "mesh={file: two.obj}", "--set",
+                  "handles=[{region: {sphere: {radius: 20 cm}}, fix: true}]")
 
     def test_neither_kills_nor_threads_cost_a_bit_of_cloth_in_motion(self):
         scene = self.write("moving.yaml", MOVING)

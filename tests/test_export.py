@@ -144,6 +144,11 @@ class Files(Case):
     def test_obj_and_ply_sequences_hold_the_frames_bit_by_bit(self):
         self.export("f_%02d.obj", "--unit", "m")
         self.export("f_%02d.ply", "--format", "ply", "--unit", "m")
+        self.export("said.obj", "--unit", "mm", "--up", "y", "--fps", "12.5", "--name", "my bag")
+        self.export("said.ply", "--unit", "mm", "--up", "y", "--fps", "12.5", "--name", "my bag")
+        for name in ("said.obj", "said.ply"):
+            head = self.bytes(name)[:400].decode(errors="replace")
+            self.assertIn("my bag, frame 3, t = 0.06 s, unit 0.001 m, y up, 12.5 frames per second", head)
         for k in range(FRAMES):
             lines = self.bytes(f"f_{k:02d}.obj").decode().split("\n")
             v = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
