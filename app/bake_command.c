@@ -250,12 +250,6 @@ static ruga_status bake_frame(job* j, int frame, const ruga_atlas* atlas, float*
     if (!interior) {
         memcpy(j->embedded, j->position, numbers * sizeof *j->embedded);
     }
-    for (size_t i = 0; i < numbers; i++) {
-        if (!isfinite(j->position[i]) || !isfinite(j->embedded[i])) {
-            return ruga_fail(RUGA_BAD_INPUT, "%s: frame %d: vertex %zu has a coordinate that is not a number",
-                             ruga_operand(j->arguments), frame, i / 3);
-        }
-    }
     if (j->base) {
         carry_target(j);
     }

@@ -52,7 +52,7 @@ static void judge(facts* f) {
 
 static ruga_status derive(const ruga_arguments* arguments, facts* f) {
     const ruga_model_def* def = &f->scene->def;
-    f->estimate = ruga_estimate_model(f->model);
+    RUGA_TRY(ruga_estimate_model(f->model, &f->estimate));
     f->strain = f->amplitude = f->edges = NAN;
     if (!def->has_interior) {
         return RUGA_OK;
@@ -132,7 +132,7 @@ static void say_sizes(const ruga_arguments* arguments, const facts* f) {
     ruga_say(arguments, "    %-28s %lld of the skin, %lld of the interior, %lld constraints\n",
              "degrees of freedom", (long long)e->skin_unknowns, (long long)e->interior_unknowns,
              (long long)e->constraints);
-    ruga_say(arguments, "    %-28s about %.2g MB\n", "memory", e->bytes / 1e6);
+    ruga_say(arguments, "    %-28s about %.3g MB\n", "memory", e->bytes / 1e6);
     ruga_say(arguments, "    %-28s roughly %s a frame, %s for %d frames\n", "time", frame, run, m->frames);
 }
 

@@ -73,9 +73,8 @@ ruga_status ruga_check_pattern(const char* path, const ruga_frame_range* range) 
     size_t length, other;
     const char* place = ruga_file_name_place(path, &length);
     if (!place && range->last > range->first) {
-        return ruga_fail(
-            RUGA_BAD_INPUT,
-            "%s: several frames need a place for their number in the name, such as frame_%%04d.obj", path);
+        return ruga_fail(RUGA_BAD_INPUT,
+                         "%s: several frames need a place for their number in the name, such as %%04d", path);
     }
     if (place && ruga_file_name_place(place + length, &other)) {
         return ruga_fail(RUGA_BAD_INPUT, "%s: the name has more than one place for the frame's number", path);
@@ -85,15 +84,6 @@ ruga_status ruga_check_pattern(const char* path, const ruga_frame_range* range) 
                          NUMBER_WIDTH_MAX);
     }
     return RUGA_OK;
-}
-
-ruga_status ruga_open_frames(const ruga_arguments* arguments, const char* pattern,
-                             ruga_result_reader** reader, ruga_frame_range* range) {
-    RUGA_TRY(ruga_check_output(pattern));
-    RUGA_TRY(ruga_open_result(ruga_operand(arguments), reader));
-    RUGA_TRY(
-        ruga_choose_frames(arguments, ruga_result_frame_count(*reader), ruga_has_pattern(pattern), range));
-    return ruga_check_pattern(pattern, range);
 }
 
 ruga_status ruga_frame_path(const char* pattern, int frame, char** path) {

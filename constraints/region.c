@@ -35,10 +35,6 @@ bool ruga_region_contains_within(const ruga_region* region, const double x[3], d
     return false;
 }
 
-bool ruga_region_contains(const ruga_region* region, const double x[3]) {
-    return ruga_region_contains_within(region, x, 0);
-}
-
 double ruga_region_slack(const ruga_mesh* mesh) {
     double min[3], max[3];
     ruga_mesh_bounds(mesh, min, max);

@@ -22,7 +22,7 @@
 
 #include "core/memory.h"
 #include "core/vec3.h"
-#include "crease/springs.h"
+#include "crease/pairs.h"
 
 #include <math.h>
 #include <string.h>

@@ -57,7 +57,8 @@ static ruga_status set_dangling_aside(walker* w) {
     }
     for (bool changed = true; changed;) {
         changed = false;
-        for (int e = 0; e < p->edge_count; e++) {
+        for (int k = 0; k < 2 * p->edge_count; k++) { // there and back: chains are listed either way
+            int e = k < p->edge_count ? k : 2 * p->edge_count - 1 - k;
             const int* v = p->edge[e].vertex;
             if (!w->aside[e] && (w->degree[v[0]] == 1 || w->degree[v[1]] == 1)) {
                 open += is_border(w, e);

@@ -122,22 +122,27 @@ static void place_from(const ruga_cut* cut, panels* p, int root, const double* t
     }
 }
 
-static void place_node(const ruga_raster* raster, const ruga_cut* cut, const motion* m, int n, double x[3]) {
-    ruga_multiply3(m->turn, raster->mesh.position + 3 * (size_t)cut->source[n], x);
-    ruga_add_scaled(1, m->shift, x);
+// Each panel's own nodes, y [pieces][3][3], and x with one of them for each node.
+static void place_nodes(const ruga_raster* raster, const ruga_cut* cut, panels* p, double* y, double* x) {
+    ruga_cut_rest(raster, cut, x);
+    for (int k = 0; k < cut->piece_count; k++) {
+        const motion* m = &p->motion[ruga_sets_find(p->parent, k)];
+        for (int i = 0; i < 3; i++) {
+            int n = cut->piece[k].node[i];
+            double* own = y + 9 * (size_t)k + 3 * (size_t)i;
+            ruga_multiply3(m->turn, raster->mesh.position + 3 * (size_t)cut->source[n], own);
+            ruga_add_scaled(1, m->shift, own);
+            memcpy(x + 3 * (size_t)n, own, 3 * sizeof *x);
+        }
+    }
 }
 
 // Where panels share a node, and where copies should meet: how far they are apart.
-static ruga_status check_fit(const ruga_raster* raster, const ruga_cut* cut, panels* p, const double* x,
-                             double tolerance) {
+static ruga_status check_fit(const ruga_cut* cut, const double* y, const double* x, double tolerance) {
     double worst = ruga_cut_gap(cut, x);
-    for (int k = 0; k < cut->piece_count; k++) {
-        for (int i = 0; i < 3; i++) {
-            double own[3];
-            int n = cut->piece[k].node[i];
-            place_node(raster, cut, &p->motion[ruga_sets_find(p->parent, k)], n, own);
-            worst = fmax(worst, ruga_distance(own, x + 3 * (size_t)n));
-        }
+    for (int k = 0; k < 3 * cut->piece_count; k++) {
+        const double* at = x + 3 * (size_t)cut->piece[k / 3].node[k % 3];
+        worst = fmax(worst, ruga_distance(y + 3 * (size_t)k, at));
     }
     return worst <= tolerance ? RUGA_OK
                               : ruga_fail(RUGA_BAD_INPUT,
@@ -146,37 +151,17 @@ static ruga_status check_fit(const ruga_raster* raster, const ruga_cut* cut, pan
                                           worst);
 }
 
-ruga_status ruga_cut_fold(const ruga_raster* raster, const ruga_cut* cut, const double* turn,
-                          double tolerance, double* x) {
-    ruga_status status = RUGA_OK;
-    panels p = {0};
-    RUGA_TRY_DONE(find_panels(cut, &p));
-    for (int k = 0; k < cut->piece_count; k++) {
-        if (!p.placed[ruga_sets_find(p.parent, k)]) {
-            place_from(cut, &p, ruga_sets_find(p.parent, k), turn);
-        }
-    }
-    ruga_cut_rest(raster, cut, x);
-    for (int k = 0; k < cut->piece_count; k++) {
-        const motion* m = &p.motion[ruga_sets_find(p.parent, k)];
-        for (int i = 0; i < 3; i++) {
-            int n = cut->piece[k].node[i];
-            place_node(raster, cut, m, n, x + 3 * (size_t)n);
-        }
-    }
-    status = check_fit(raster, cut, &p, x, tolerance);
-done:
-    clear(&p);
-    return status;
-}
-
-void ruga_roll_cone(int count, double angle, double* x) {
-    double mean[2] = {0, 0}, s = angle / (2 * RUGA_PI), c = sqrt(1 - s * s);
+static double mean_direction(int count, const double* x) {
+    double mean[2] = {0, 0};
     for (int n = 0; n < count; n++) {
         mean[0] += x[3 * (size_t)n];
         mean[1] += x[3 * (size_t)n + 1];
     }
-    double middle = atan2(mean[1], mean[0]);
+    return atan2(mean[1], mean[0]);
+}
+
+static void roll(int count, double angle, double middle, double* x) {
+    double s = angle / (2 * RUGA_PI), c = sqrt(1 - s * s);
     for (int n = 0; n < count; n++) {
         double* at = x + 3 * (size_t)n;
         double rho = hypot(at[0], at[1]), h = at[2];
@@ -186,4 +171,33 @@ void ruga_roll_cone(int count, double angle, double* x) {
         at[1] = out * sin(phi + middle);
         at[2] = -c * rho + s * h;
     }
+}
+
+void ruga_roll_cone(int count, double angle, double* x) {
+    roll(count, angle, mean_direction(count, x), x);
+}
+
+ruga_status ruga_cut_fold(const ruga_raster* raster, const ruga_cut* cut, const double* turn, double cone,
+                          double tolerance, double* x) {
+    ruga_status status = RUGA_OK;
+    panels p = {0};
+    double* y = NULL;
+    RUGA_TRY_DONE(find_panels(cut, &p));
+    RUGA_TRY_DONE(RUGA_NEW(y, 9 * (size_t)cut->piece_count));
+    for (int k = 0; k < cut->piece_count; k++) {
+        if (!p.placed[ruga_sets_find(p.parent, k)]) {
+            place_from(cut, &p, ruga_sets_find(p.parent, k), turn);
+        }
+    }
+    place_nodes(raster, cut, &p, y, x);
+    if (cone != 0) {
+        double middle = mean_direction(cut->node_count, x);
+        roll(cut->node_count, cone, middle, x);
+        roll(3 * cut->piece_count, cone, middle, y);
+    }
+    status = check_fit(cut, y, x, tolerance);
+done:
+    clear(&p);
+    ruga_release(y);
+    return status;
 }

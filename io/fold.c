@@ -360,15 +360,6 @@ ruga_status ruga_fold_read(const char* path, int frame, double scale, ruga_creas
     return status;
 }
 
-ruga_status ruga_fold_count(const char* path, int* frames) {
-    json_t* root = NULL;
-    RUGA_TRY(load(path, &root));
-    size_t count = json_array_size(json_object_get(root, "file_frames")) + 1;
-    json_decref(root);
-    *frames = count < INT_MAX ? (int)count : INT_MAX;
-    return RUGA_OK;
-}
-
 // ------------------------------------------------------------------------------- mesh
 
 static bool is_straight_on(const double a[3], const double b[3], const double c[3]) {

@@ -586,6 +586,20 @@ static bool get_row(const ruga_result_reader* reader, int set, int row, double* 
     return ruga_hdf5_get_row(reader->set[set], H5T_NATIVE_DOUBLE, (hsize_t)row, data);
 }
 
+// Nothing that reads a frame has to reckon with what is no place.
+static ruga_status check_places(const ruga_result_reader* reader, int frame, const char* what,
+                                const double* x) {
+    const double farthest = 1e30; // m; its square is a number, and it fits into a float
+    for (int i = 0; x && i < 3 * reader->mesh.vertex_count; i++) {
+        if (!(fabs(x[i]) <= farthest)) {
+            return ruga_fail(RUGA_BAD_INPUT,
+                             "%s: frame %d: coordinate %c of vertex %d%s is %g, which is no place",
+                             reader->path, frame, "xyz"[i % 3], i / 3, what, x[i]);
+        }
+    }
+    return RUGA_OK;
+}
+
 ruga_status ruga_result_read_frame(ruga_result_reader* reader, int frame, double* time, double* position,
                                    double* embedded, ruga_report* report) {
     RUGA_TRY(check_frame(reader, frame));
@@ -600,7 +614,9 @@ ruga_status ruga_result_read_frame(ruga_result_reader* reader, int frame, double
               (!report || ruga_result_get_report(reader->set, (hsize_t)frame, report));
     ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "a frame cannot be read");
     ruga_hdf5_end(&hdf5);
-    return status;
+    RUGA_TRY(status);
+    RUGA_TRY(check_places(reader, frame, "", position));
+    return check_places(reader, frame, " of the interior's surface", embedded);
 }
 
 ruga_status ruga_result_read_creases(ruga_result_reader* reader, int frame, double* angle, double* rest, double* gap) {

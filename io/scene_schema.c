@@ -253,6 +253,8 @@ const ruga_key ruga_keys[] = {
            "whole cone, its tip at the origin and its axis along -z. Its first panel stays where it was."),
     NUMBERS("start.velocity", 3, MODEL(start.velocity), "m/s", "[0, 0, 0]", ANY,
             "In dynamic motion. Velocity of what is not held."),
+    NUMBERS("start.spin", 3, MODEL(start.spin), "rad/s", "[0, 0, 0]", ANY,
+            "In dynamic motion. Angular velocity about the origin of what is not held, added to that."),
     NUMBERS("gravity", 3, MODEL(gravity), "m/s^2", "[0, 0, 0]", ANY, "Acceleration on skin and interior."),
 
     ENTRIES("handles", "(none)",

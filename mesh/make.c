@@ -26,20 +26,10 @@ enum { ARC_SAMPLES = 512 };
 
 static const char* const shape_names[RUGA_SHAPE_COUNT] = {"sheet",  "slab",   "bar",
                                                           "pillow", "sphere", "skirt"};
-static const char* const pattern_names[] = {"equilateral", "diagonal", "alternating"};
 
 int ruga_shape_from_name(const char* name) {
     for (int i = 0; i < RUGA_SHAPE_COUNT; i++) {
         if (strcmp(name, shape_names[i]) == 0) {
-            return i;
-        }
-    }
-    return -1;
-}
-
-int ruga_pattern_from_name(const char* name) {
-    for (int i = 0; i < (int)(sizeof pattern_names / sizeof *pattern_names); i++) {
-        if (strcmp(name, pattern_names[i]) == 0) {
             return i;
         }
     }

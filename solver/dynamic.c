@@ -34,6 +34,7 @@
 static const double DAMPED = 1e-6;     // residual of the damping over the momentum, in the norm of M^-1
 static const double DIFFERENCE = 1e-6; // edges
 static const double EDGE_OF_STABILITY = 0.98;
+static const double MOST_STEPS = 1e7; // of a frame: a day and more
 
 enum { CHUNK = 1024, MOST_HALVINGS = 6, MOST_DAMPING = 200, FIRST_EFFORT = 80, EFFORT = 8 };
 
@@ -500,7 +501,13 @@ ruga_status ruga_dynamic_advance(ruga_dynamic* d, const ruga_dynamic_drive* driv
         d->limit = ruga_dynamic_limit(d, x, FIRST_EFFORT);
     }
     double wanted = ceil(duration / (d->def.safety * d->limit));
-    int count = wanted < 1 ? 1 : wanted < 1e8 ? (int)wanted : 100000000;
+    if (!(wanted <= MOST_STEPS)) {
+        return ruga_fail(RUGA_BAD_INPUT,
+                         "a time.step of %.3g s takes %.2g steps of motion, since none longer than %.2g s is "
+                         "stable: use larger triangles, or a softer or denser skin",
+                         duration, wanted, d->limit);
+    }
+    int count = wanted < 1 ? 1 : (int)wanted;
     memcpy(d->old_x, x, size);
     memcpy(d->old_v, v, size);
     ruga_dynamic_save(d, d->old_memory);

@@ -35,7 +35,7 @@ static ruga_status check_motion(const ruga_model_def* def) {
             return ruga_fail(RUGA_BAD_INPUT,
                              "start.fold: needs interior: none; a skin starts on its interior");
         }
-        bool started = start->cone != 0 || ruga_norm(start->velocity) > 0;
+        bool started = start->cone != 0 || ruga_norm(start->velocity) > 0 || ruga_norm(start->spin) > 0;
         for (int i = 0; i < def->crease_count; i++) {
             if (def->creases[i].start > 0) {
                 return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.motion: dynamic", i);
@@ -46,11 +46,9 @@ static ruga_status check_motion(const ruga_model_def* def) {
         }
         return s->model == RUGA_SKIN_SPRINGS
                    ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
-               : started
-                   ? ruga_fail(
-                         RUGA_BAD_INPUT,
-                         "start: cone and velocity need skin.motion: dynamic; a static skin starts at rest")
-                   : RUGA_OK;
+               : started ? ruga_fail(RUGA_BAD_INPUT, "start: cone, velocity and spin need skin.motion: "
+                                                     "dynamic; a static skin starts at rest")
+                         : RUGA_OK;
     }
     if (def->has_interior) {
         trouble = "needs interior: none";
@@ -75,6 +73,8 @@ static ruga_status check_motion(const ruga_model_def* def) {
     RUGA_TRY(require(s->drag >= 0 && isfinite(s->drag), "skin.drag", s->drag, "0 or above"));
     RUGA_TRY(require(isfinite(ruga_norm(def->start.velocity)), "start.velocity",
                      ruga_norm(def->start.velocity), "finite"));
+    RUGA_TRY(
+        require(isfinite(ruga_norm(def->start.spin)), "start.spin", ruga_norm(def->start.spin), "finite"));
     return require(def->start.cone >= 0 && def->start.cone < 2 * RUGA_PI, "start.cone", def->start.cone,
                    "between 0 and a whole turn");
 }

@@ -11,7 +11,7 @@
 //
 // A row takes places of copies from those of others, two pairs at most, and neighbouring rows share a pair:
 //   W^T = V J,  (J v)_k = v_a - v_b, the jump of pair k = (a, b).
-// There are about as many pairs as rows, so that J and V together touch half as much memory as W.
+// There are about as many pairs as rows, so that J meets half as many nodes as W does.
 //
 // Not for statics: projecting after an unconstrained Newton step ends in the point that is nearest in the
 // metric of masses, which is not an equilibrium (equations 9 and 10 of the paper do that). There the rows

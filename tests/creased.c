@@ -16,6 +16,7 @@
 #include "tests/creased.h"
 
 #include "core/memory.h"
+#include "core/sparse.h"
 #include "core/vec3.h"
 #include "crease/cloth.h"
 #include "shell/membrane.h"
@@ -283,13 +284,29 @@ static void add_membrane(ruga_creased* c, const double* x, double clamp, bool se
     }
 }
 
+// Elements beside a hinge may share nodes.
+static void add_hinge_hessian(ruga_creased* c, const ruga_hinge* hinge,
+                              const double hessian[RUGA_HINGE_UNKNOWNS][RUGA_HINGE_UNKNOWNS]) {
+    for (int b = 0; b < RUGA_HINGE_UNKNOWNS; b++) {
+        int column = 3 * hinge->node[b / 3] + b % 3;
+        for (int a = 0; a < RUGA_HINGE_UNKNOWNS; a++) {
+            int row = 3 * hinge->node[a / 3] + a % 3;
+            if (row >= column) {
+                c->pattern.value[ruga_sparse_find(&c->pattern, row, column)] += hessian[a][b];
+            }
+        }
+    }
+}
+
 static void add_hinges(ruga_creased* c, const double* x, double clamp, bool second, energies* e) {
     for (int h = 0; h < c->hinge_count; h++) {
-        double gradient[RUGA_HINGE_NODES][3];
+        double gradient[RUGA_HINGE_NODES][3], hessian[RUGA_HINGE_UNKNOWNS][RUGA_HINGE_UNKNOWNS];
         const ruga_hinge* hinge = &c->hinge[h];
-        double energy = ruga_hinges_energy(1, hinge, &c->stiffness[h], &c->rest[h], x, &c->near[h], clamp,
-                                           NULL, &c->pattern, second ? c->pattern.value : NULL);
-        (void)ruga_hinge_energy(hinge, c->stiffness[h], c->rest[h], x, &c->near[h], clamp, gradient, NULL);
+        double energy = ruga_hinge_energy(hinge, c->stiffness[h], c->rest[h], x, &c->near[h], clamp, gradient,
+                                          second ? hessian : NULL);
+        if (second) {
+            add_hinge_hessian(c, hinge, (const double(*)[RUGA_HINGE_UNKNOWNS])hessian);
+        }
         c->trial_near[h] = ruga_hinge_measure(hinge, x, &c->near[h], NULL);
         *(h < c->def.cut->segment_count && hinge->curve >= 0 ? &e->hinge : &e->bending) += energy;
         for (int a = 0; a < RUGA_HINGE_NODES; a++) {

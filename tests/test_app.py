@@ -26,6 +26,23 @@ except ImportError:
 RUGA, BUILD, SOURCE = (os.path.abspath(path) for path in sys.argv[1:4])
 
 # The smallest sheet that wrinkles: 9 edges per wavelength, 10 frames of about 50 ms.
+# In motion, with creases that yield and one that comes later.
+MOVING = """\
+mesh: {make: {shape: sheet, size: [40 cm, 30 cm], cells: [12, 9], pattern: diagonal}}
+skin: {model: springs, motion: dynamic, thickness: 1 mm, young: 0.5 MPa, density: 300 kg/m^3, damping: 0.1 ms}
+interior: none
+creases:
+  - curve: {polyline: [[-0.5 m, 0.01 m, 0 m], [0.5 m, -0.013 m, 0 m]]}
+    hinge: {stiffness: 1 mN, rest: 60 deg, yield: 10 deg, rate: 5 1/s, hardening: 0.1}
+  - curve: {polyline: [[-0.19 m, -0.5 m, 0 m], [-0.199 m, 0.5 m, 0 m]]}
+    hinge: {stiffness: 2 mN, rest: 90 deg, yield: 30 deg}
+    start: 0.25 s
+time: {step: 40 ms, frames: 12}
+gravity: [0, 0, -9.81]
+handles:
+  - {region: {box: [[0.19, -1, -1], [1, 1, 1]]}, move: {translate: [0, 0, 5 cm]}, during: [0 s, 0.2 s]}
+"""
+
 SCENE = """\
 mesh:       {make: {shape: sheet, size: [14 cm, 4 cm], edge: 4.2 mm}}
 skin:       {thickness: 2 mm, young: 40 MPa}
@@ -486,6 +503,15 @@ time:     {frames: 1}
         self.write("two.obj", text)
         self.ruga("run", scene, "-o", "free.h5", "--force", "--set", "mesh={file: two.obj}", "--set",
                   "handles=[{region: {sphere: {radius: 20 cm}}, fix: true}]")
+
+    def test_neither_kills_nor_threads_cost_a_bit_of_cloth_in_motion(self):
+        scene = self.write("moving.yaml", MOVING)
+        self.ruga("run", scene, "-o", "moving.h5", "--threads", 1)
+        self.ruga("run", scene, "-o", "threads.h5", "--threads", 2)
+        self.assert_same(self.path("moving.h5"), self.path("threads.h5"))
+        self.kill_and_resume(scene, 4, self.path("moving.h5"))
+        self.refused("run", scene, "-o", "wild.h5", "--quiet", "--set", "gravity=[0, 0, -1e9]",
+                     saying="cannot be stepped")
 
     def test_creases_from_a_pattern(self):
         self.write("cross.fold", CROSS)

@@ -285,7 +285,7 @@ static double worst_point(const body* b, const ruga_handle_def* handle, const do
         } else {
             ruga_lattice_point(l, e, (i - count) % 27, xi, x);
             ruga_lattice_shape(l, xi, weight, NULL);
-            if (l->volume[i - count] <= 0 || !ruga_region_contains(&handle->region, x)) {
+            if (l->volume[i - count] <= 0 || !ruga_region_contains_within(&handle->region, x, 0)) {
                 continue;
             }
         }

@@ -61,10 +61,10 @@ static void panels_fold_rigidly_or_not_at_all(void** state) {
             turn[s] = m.c.cut.segment[s].curve >= 0 ? 2.4 : 0;
         }
         if (which == CROSS) {
-            assert_status(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 1e-9, m.x), RUGA_BAD_INPUT);
+            assert_status(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 0, 1e-9, m.x), RUGA_BAD_INPUT);
             assert_non_null(strstr(ruga_last_error(), "do not fit together"));
         } else {
-            assert_ok(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 1e-14, m.x));
+            assert_ok(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 0, 1e-14, m.x));
             ruga_hinges_make(&m.c.raster, &m.c.cut, hinge);
             for (int s = 0; s < segments; s++) {
                 assert_near(ruga_hinge_measure(&hinge[s], m.x, NULL, NULL), turn[s], 1e-12);
@@ -518,6 +518,20 @@ static void a_blow_up_is_said_and_nothing_moves_on(void** state) {
     clear_motion(&m);
 }
 
+static void a_frame_of_too_many_steps_is_refused(void** state) {
+    (void)state;
+    motion m;
+    ruga_dynamic_report report;
+    cut_sheet(&m, 4, LINE, false);
+    choose_kind(&m, 0);
+    m.def.elastic.skin.density = 1e-14;
+    create_motion(&m);
+    ruga_dynamic_start(m.dynamic, m.x, m.v);
+    assert_status(ruga_dynamic_advance(m.dynamic, NULL, 0, 1, m.x, m.v, &report), RUGA_BAD_INPUT);
+    assert_non_null(strstr(ruga_last_error(), "a time.step of 1 s takes"));
+    clear_motion(&m);
+}
+
 // A crease that becomes a thousand times stiffer within a frame by its rest angle: the frame is taken anew.
 static void too_long_steps_are_halved(void** state) {
     (void)state;
@@ -624,6 +638,7 @@ int main(void) {
         cmocka_unit_test(a_crease_does_not_shorten_the_step_as_a_conforming_mesh_does),
         cmocka_unit_test(the_limit_is_where_steps_stop_being_stable),
         cmocka_unit_test(a_blow_up_is_said_and_nothing_moves_on),
+        cmocka_unit_test(a_frame_of_too_many_steps_is_refused),
         cmocka_unit_test(too_long_steps_are_halved),
         cmocka_unit_test(the_bits_depend_on_nothing),
         cmocka_unit_test(every_failed_allocation_is_a_status),

@@ -270,8 +270,6 @@ static void names_are_found(void** state) {
         assert_int_equal(ruga_shape_from_name(ruga_shape_name((ruga_shape)i)), i);
     }
     assert_int_equal(ruga_shape_from_name("cube"), -1);
-    assert_int_equal(ruga_pattern_from_name("alternating"), RUGA_PATTERN_ALTERNATING);
-    assert_int_equal(ruga_pattern_from_name(""), -1);
 }
 
 static void connectivity_tables_agree(void** state) {

@@ -131,6 +131,67 @@ class Pictures(unittest.TestCase):
         self.refused("render", "sheet.h5", saying="-o PNG is missing")
         self.assertFalse(os.path.exists(self.path("a.png")))
 
+    def test_odd_results_end_with_one_sentence(self):
+        """Frames that are no places, far ones, a single one, a point; nothing may be left behind."""
+        def change(name, edit):
+            shutil.copy(self.path("sheet.h5"), self.path(name))
+            with h5py.File(self.path(name), "r+") as file:
+                edit(file)
+
+        def keep_one(file):
+            frames = file["frames/time"].shape[0]
+            found = []
+            file.visititems(lambda _, item: found.append(item) if isinstance(item, h5py.Dataset) else None)
+            for item in found:
+                if item.maxshape[:1] == (None,) and item.shape[0] == frames:
+                    item.resize(1, axis=0)
+
+        def put(value, where=(3, 7, 2), name="shell/position"):
+            def edit(file):
+                file[name][where] = value
+            return edit
+
+        os.makedirs(self.path("out"))
+        commands = (("render", *SIZE, "-o", "out/a_%d.png"), ("render", *SIZE, "--color", "displacement", "-o", "out/b.png"),
+                    ("plot", "-o", "out/c.svg"), ("measure", "--json"), ("view", "-o", "out/d.html"),
+                    ("export", "-o", "out/e.obj"), ("export", "-o", "out/f.glb"), ("measure", "--curve", "out/g.csv"))
+        for value, name, some in ((numpy.nan, "position", commands), (1e300, "position", commands[:1] + commands[4:5]),
+                                  (-numpy.inf, "embedded", commands[1:5])):
+            change("odd.h5", put(value, name="shell/" + name))
+            for command, *words in some:
+                self.refused(command, "odd.h5", *words, saying=r"frame 3: coordinate z of vertex 7")
+                self.assertEqual([f for f in os.listdir(self.path("out")) if not f.startswith("a_")], [], command)
+            self.ruga("render", "odd.h5", *SIZE, "--frame", "2", "-o", "whole.png")  # another frame is shown
+        for edit, some in ((put(1e20), commands[:2]), (put(0.0, ...), commands[:3]), (keep_one, commands)):
+            change("odd.h5", edit)
+            for command, *words in some:
+                done = self.call(command, "odd.h5", *words)
+                self.assertTrue(done.returncode == 0 or "without npm" in done.stderr, f"{words} {done.stderr}")
+        for size in (1e-7, 1e7):
+            shutil.copy(self.path("folded.h5"), self.path("odd.h5"))
+            with h5py.File(self.path("odd.h5"), "r+") as file:
+                for name in ("mesh/rest", "shell/position"):
+                    file[name][...] *= size
+            self.ruga("render", "odd.h5", *SIZE, "-o", "size.png")
+            self.assertGreater(len(self.read("size.png")), 2000)
+        self.refused("render", "sheet.h5", "--width", "0", "-o", "x.png", saying="--width: 0 is not")
+        self.refused("render", "sheet.h5", "--frame", "-1", "-o", "x.png", saying="--frame: -1 is not")
+        self.refused("render", "sheet.h5", "--frames", "0:99999999999", "-o", "x_%d.png", saying="0:3")
+        self.refused("render", "sheet.h5", "-o", "x.jpg", saying=".png")
+        self.assertFalse(os.path.exists(self.path("x.jpg")))
+
+    def test_names_with_blanks_and_letters_of_any_script(self):
+        folder = "zwei Wörter/図"
+        os.makedirs(self.path(folder))
+        shutil.copy(self.path("sheet.h5"), self.path(folder + "/erste Falte ö.h5"))
+        for name, *words in (("Bild 1 é.png", "render", *SIZE), ("Kurve é.svg", "plot"), ("Netz é.obj", "export"),
+                             ("Netz é.glb", "export"), ("Netz é.usda", "export"), ("Netz é.xdmf", "export")):
+            self.ruga(words[0], folder + "/erste Falte ö.h5", *words[1:], "-o", f"{folder}/{name}")
+            self.assertGreater(len(self.read(f"{folder}/{name}")), 500, name)
+        self.assertIn("erste Falte ö.h5", self.read(folder + "/Netz é.xdmf").decode())
+        self.ruga("run", "sheet.yaml", "-o", folder + "/Lauf ö.h5", "--frames", "1", "--quiet", "--preview", folder + "/Bilder ö")
+        self.assertEqual(len(os.listdir(self.path(folder + "/Bilder ö"))), 2)
+
     def test_frames_and_turntables_have_numbered_pictures(self):
         self.ruga("render", "sheet.h5", "--frames", "1:2", *SIZE, "-o", "f%d.png")
         self.assertFalse(os.path.exists(self.path("f0.png")))
