@@ -18,11 +18,13 @@ void ruga_measurement_clear(ruga_measurement* m) {
 static ruga_status take_creases(ruga_result_reader* reader, ruga_measurement* m) {
     const ruga_result_creases* creases = ruga_result_reader_header(reader)->creases;
     ruga_status status = RUGA_OK;
-    double *angle = NULL, *rest = NULL;
+    double *angle = NULL, *rest = NULL, *gap = NULL;
     RUGA_TRY_DONE(RUGA_NEW(angle, creases->segment_count));
     RUGA_TRY_DONE(RUGA_NEW(rest, creases->segment_count));
+    RUGA_TRY_DONE(RUGA_NEW(gap, creases->segment_count));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(m->crease, creases->crease_count));
     RUGA_TRY_DONE(ruga_result_read_creases(reader, m->frame, angle, rest, &m->gap));
+    RUGA_TRY_DONE(ruga_result_read_segment_gaps(reader, m->frame, gap));
     m->crease_count = creases->crease_count;
     for (int c = 0; c < creases->crease_count; c++) {
         m->crease[c] = (ruga_measured_crease){
@@ -37,6 +39,7 @@ static ruga_status take_creases(ruga_result_reader* reader, ruga_measurement* m)
         c->angle_min = fmin(c->angle_min, angle[s]);
         c->angle_max = fmax(c->angle_max, angle[s]);
         c->hinge_energy += 0.5 * creases->stiffness[s] * creases->length[s] * off * off;
+        c->gap = fmax(c->gap, gap[s]);
     }
     int kept = 0; // a cut has no segments
     for (int c = 0; c < creases->crease_count; c++) {
@@ -49,6 +52,7 @@ static ruga_status take_creases(ruga_result_reader* reader, ruga_measurement* m)
 done:
     ruga_release(angle);
     ruga_release(rest);
+    ruga_release(gap);
     return status;
 }
 
@@ -74,6 +78,7 @@ ruga_status ruga_measurement_take(ruga_result_reader* reader, int frame, ruga_me
     const ruga_mesh* mesh = ruga_result_mesh(reader);
     double *position = NULL, *embedded = NULL;
     ruga_measure* measure = NULL;
+    ruga_connectivity connectivity = {0};
     m->tied = ruga_result_has_interior(reader);
     m->predicted = header->wavelength;
     RUGA_TRY_DONE(RUGA_NEW(position, 3 * (size_t)mesh->vertex_count));
@@ -85,9 +90,8 @@ ruga_status ruga_measurement_take(ruga_result_reader* reader, int frame, ruga_me
                                                 header->seed, &measure));
         RUGA_TRY_DONE(ruga_measure_frame(measure, position, embedded, &m->values));
     } else {
-        ruga_mesh deformed = *mesh;
-        deformed.position = position;
-        m->values.volume = ruga_mesh_volume(&deformed);
+        RUGA_TRY_DONE(ruga_connectivity_create(mesh, &connectivity));
+        m->values.volume = ruga_measure_volume(mesh, &connectivity, position);
     }
     if (header->creases) {
         RUGA_TRY_DONE(take_creases(reader, m));
@@ -98,6 +102,7 @@ done:
         ruga_measurement_clear(m);
     }
     ruga_measure_destroy(&measure);
+    ruga_connectivity_clear(&connectivity);
     ruga_release(position);
     ruga_release(embedded);
     return status;
@@ -118,7 +123,7 @@ static json_t* creases_json(const ruga_measurement* m) {
                             "length", ruga_json_number(k->length), "angle_mean",
                             ruga_json_number(k->angle_mean), "angle_min", ruga_json_number(k->angle_min),
                             "angle_max", ruga_json_number(k->angle_max), "hinge_energy",
-                            ruga_json_number(k->hinge_energy), "gap", ruga_json_number(m->gap)));
+                            ruga_json_number(k->hinge_energy), "gap", ruga_json_number(k->gap)));
     }
     return list;
 }

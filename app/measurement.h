@@ -16,6 +16,7 @@ typedef struct ruga_measured_crease {
     double length;                           // m, at rest
     double angle_mean, angle_min, angle_max; // rad; the mean by length
     double hinge_energy;                     // J
+    double gap;                              // m, the largest between what is sewn together along it
 } ruga_measured_crease;
 
 typedef struct ruga_measurement {

@@ -96,10 +96,9 @@ static ruga_status pack_all(job* j) {
         }
         ruga_page_pack(3 * j->vertices, j->embedded, j->low, j->step, j->embedded_place,
                        j->flat + row * (size_t)t);
-        for (int v = 0; v < j->vertices; v++) {
-            double part = 0.5 + 0.5 * ruga_measure_displacement(j->measure)[v] / j->largest;
-            j->values[(size_t)t * (size_t)j->vertices + (size_t)v] =
-                (unsigned char)((COLORS - 1) * part + 0.5);
+        for (size_t i = (size_t)t * (size_t)j->vertices; i < (size_t)(t + 1) * (size_t)j->vertices; i++) {
+            double part = 0.5 + 0.5 * (double)j->displacement[i] / j->largest;
+            j->values[i] = (unsigned char)((COLORS - 1) * part + 0.5);
         }
     }
     return RUGA_OK;

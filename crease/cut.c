@@ -11,9 +11,8 @@
 //      turns about it, which gives it freedom; the paper keeps cuts away from vertices. Only at a cut that
 //      stays open are the pieces on its sides kept apart;
 //   4  around an embedded node, the pieces that hold it see it between the copies of the edge's ends that
-//   they
-//      are glued to: each different pair is a copy of the node. Copies that a crease (not an open cut) keeps
-//      apart are to be one place, see sewing.h;
+//      they are glued to: each different pair is a copy of the node. Copies that a crease (not an open cut)
+//      keeps apart are to be one place, see sewing.h;
 //   5  edges, creases and auxiliary chords are listed with the pieces beside them, for bending.
 // Membrane and mass count with the part of the triangle's area that is the piece's material, bending with the
 // part of the edge's length: then a cut changes neither.
@@ -527,16 +526,24 @@ void ruga_cut_material(const ruga_cut* cut, const double* x, double* material) {
     }
 }
 
+double ruga_cut_gap_at(const ruga_cut* cut, int vertex, const double* x) {
+    if (vertex < cut->real_count) {
+        return 0;
+    }
+    const ruga_bound* b = &cut->bound[vertex - cut->real_count];
+    double gap = 0, first[3], at[3];
+    copy_position(cut, b, 0, x, first);
+    for (int k = 1; k < b->count; k++) {
+        copy_position(cut, b, k, x, at);
+        gap = fmax(gap, ruga_distance(first, at));
+    }
+    return gap;
+}
+
 double ruga_cut_gap(const ruga_cut* cut, const double* x) {
     double gap = 0;
     for (int i = 0; i < cut->bound_count; i++) {
-        const ruga_bound* b = &cut->bound[i];
-        double first[3], at[3];
-        copy_position(cut, b, 0, x, first);
-        for (int k = 1; k < b->count; k++) {
-            copy_position(cut, b, k, x, at);
-            gap = fmax(gap, ruga_distance(first, at));
-        }
+        gap = fmax(gap, ruga_cut_gap_at(cut, cut->real_count + i, x));
     }
     return gap;
 }

@@ -88,6 +88,8 @@ void ruga_cut_masses(const ruga_cut* cut, const double* triangle_mass, double le
                      double* mass);
 // Largest distance, m, between copies of one embedded node.
 double ruga_cut_gap(const ruga_cut* cut, const double* x);
+// That between the copies of one vertex of the material.
+double ruga_cut_gap_at(const ruga_cut* cut, int vertex, const double* x);
 
 // The material mesh of a cut; called by ruga_cut_create.
 ruga_status ruga_cut_make_material(const ruga_raster* raster, ruga_cut* cut);

@@ -50,16 +50,19 @@ static bool is_border(const walker* w, int edge) {
 
 static ruga_status set_dangling_aside(walker* w) {
     ruga_crease_pattern* p = w->pattern;
-    int count = 0;
+    int count = 0, open = 0, end = 0;
     for (int e = 0; e < p->edge_count; e++) {
         w->degree[p->edge[e].vertex[0]]++;
         w->degree[p->edge[e].vertex[1]]++;
     }
     for (bool changed = true; changed;) {
         changed = false;
-        for (int e = 0; e < p->edge_count; e++) {
+        for (int k = 0; k < 2 * p->edge_count; k++) { // there and back: chains are listed either way
+            int e = k < p->edge_count ? k : 2 * p->edge_count - 1 - k;
             const int* v = p->edge[e].vertex;
             if (!w->aside[e] && (w->degree[v[0]] == 1 || w->degree[v[1]] == 1)) {
+                open += is_border(w, e);
+                end = is_border(w, e) && open == 1 ? v[w->degree[v[0]] != 1] : end;
                 w->aside[e] = changed = true;
                 w->degree[v[0]]--;
                 w->degree[v[1]]--;
@@ -67,9 +70,15 @@ static ruga_status set_dangling_aside(walker* w) {
             }
         }
     }
-    return count == 0 ? RUGA_OK
-                      : ruga_crease_pattern_note(
-                            p, "%d lines end within a face: they are creases, but divide no face", count);
+    if (open > 0) {
+        RUGA_TRY(ruga_crease_pattern_note(
+            p, "%d border lines enclose nothing, as the outline is open at (%.6g, %.6g): close it there",
+            open, p->position[end][0], p->position[end][1]));
+    }
+    return count == open
+               ? RUGA_OK
+               : ruga_crease_pattern_note(
+                     p, "%d lines end within a face: they are creases, but divide no face", count - open);
 }
 
 typedef struct spoke {
@@ -334,7 +343,8 @@ done:
 // ------------------------------------------------------------------------------- faces at hand
 
 typedef struct line {
-    int low, high, edge; // -1 = the side of a face
+    int low, high;
+    int edge, face; // -1 = the side of a face, and a line
 } line;
 
 static int compare_lines(const void* a, const void* b) {
@@ -351,12 +361,12 @@ static ruga_status sort_lines(const ruga_crease_pattern* p, line** sorted) {
     RUGA_TRY(RUGA_NEW(*sorted, (size_t)p->edge_count + (size_t)p->corner_count));
     for (int e = 0; e < p->edge_count; e++) {
         const int* v = p->edge[e].vertex;
-        (*sorted)[count++] = (line){v[0] < v[1] ? v[0] : v[1], v[0] < v[1] ? v[1] : v[0], e};
+        (*sorted)[count++] = (line){v[0] < v[1] ? v[0] : v[1], v[0] < v[1] ? v[1] : v[0], e, -1};
     }
     for (int f = 0; f < p->face_count; f++) {
         for (int k = p->face_start[f]; k < p->face_start[f + 1]; k++) {
             int a = p->corner[k], b = p->corner[k + 1 < p->face_start[f + 1] ? k + 1 : p->face_start[f]];
-            (*sorted)[count++] = (line){a < b ? a : b, a < b ? b : a, -1};
+            (*sorted)[count++] = (line){a < b ? a : b, a < b ? b : a, -1, f};
         }
     }
     if (count > 1) {
@@ -402,5 +412,46 @@ ruga_status ruga_crease_pattern_mark_rims(ruga_crease_pattern* p, bool* complete
     }
 done:
     ruga_release(sorted);
+    return status;
+}
+
+// ------------------------------------------------------------------------------- panels
+
+// Faces on both sides of what is no line, or a flat one, are of one set.
+static void join_faces(const ruga_crease_pattern* p, const line* sorted, int* set) {
+    int count = p->edge_count + p->corner_count;
+    for (int i = 0, end; i < count; i = end) {
+        bool folds = false;
+        int first = -1;
+        for (end = i; end < count && sorted[end].low == sorted[i].low && sorted[end].high == sorted[i].high;
+             end++) {
+            const line* l = &sorted[end];
+            folds = folds || (l->edge >= 0 && p->edge[l->edge].assignment != RUGA_ASSIGNMENT_FLAT);
+            if (l->face >= 0 && !folds && first >= 0) {
+                ruga_sets_unite(set, first, l->face);
+            }
+            first = l->face >= 0 && first < 0 ? l->face : first;
+        }
+    }
+}
+
+ruga_status ruga_crease_pattern_panels(const ruga_crease_pattern* p, int* count, int* panel) {
+    line* sorted = NULL;
+    int* set = NULL;
+    ruga_status status = RUGA_OK;
+    *count = 0;
+    RUGA_TRY_DONE(RUGA_NEW(set, p->face_count));
+    for (int f = 0; f < p->face_count; f++) {
+        set[f] = f;
+    }
+    RUGA_TRY_DONE(sort_lines(p, &sorted));
+    join_faces(p, sorted, set);
+    for (int f = 0; f < p->face_count; f++) { // a root is the first of its set
+        int root = ruga_sets_find(set, f);
+        panel[f] = root == f ? (*count)++ : panel[root];
+    }
+done:
+    ruga_release(sorted);
+    ruga_release(set);
     return status;
 }

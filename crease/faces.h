@@ -15,4 +15,7 @@ ruga_status ruga_crease_pattern_find_faces(ruga_crease_pattern* pattern);
 // missing, or a border has none.
 ruga_status ruga_crease_pattern_mark_rims(ruga_crease_pattern* pattern, bool* complete);
 
+// The panel of each face [faces], from 0 on: those that no line, or a flat one, divides are of one.
+ruga_status ruga_crease_pattern_panels(const ruga_crease_pattern* pattern, int* count, int* panel);
+
 #endif

@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "core/vec3.h"
+#include "crease/faces.h"
 #include "io/polygons.h"
 #include "io/text.h"
 #include "io/writer.h"
@@ -16,6 +17,7 @@
 #include <jansson.h>
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +37,7 @@ static ruga_status load(const char* path, json_t** root) {
     ruga_text text;
     json_error_t error;
     RUGA_TRY(ruga_text_load(path, &text));
-    *root = json_loadb(text.data, text.size, 0, &error);
+    *root = json_loadb(text.at, (size_t)(text.end - text.at), 0, &error);
     ruga_text_close(&text);
     if (!*root) {
         return ruga_fail(RUGA_BAD_INPUT, "%s:%d: not JSON: %s", path, error.line, error.text);
@@ -183,6 +185,14 @@ static ruga_status read_edge(const reader* r, size_t e, const json_t* ends, cons
         if (!json_is_number(angle) || !(fabs(turn) <= 2 * RUGA_PI)) {
             return fail(r, "edges_foldAngle", e, "is not an angle in degrees");
         }
+    }
+    if ((assignment == RUGA_ASSIGNMENT_MOUNTAIN && turn > 0) ||
+        (assignment == RUGA_ASSIGNMENT_VALLEY && turn < 0)) {
+        RUGA_TRY(ruga_crease_pattern_note(
+            r->pattern,
+            "edges_foldAngle[%zu] is %g degrees, although edges_assignment calls the line a "
+            "%s: the angle counts",
+            e, turn * 180 / RUGA_PI, turn > 0 ? "mountain" : "valley"));
     }
     // An angle of a border or a cut says nothing.
     bool folds = assignment != RUGA_ASSIGNMENT_BORDER && assignment != RUGA_ASSIGNMENT_CUT;
@@ -350,15 +360,6 @@ ruga_status ruga_fold_read(const char* path, int frame, double scale, ruga_creas
     return status;
 }
 
-ruga_status ruga_fold_count(const char* path, int* frames) {
-    json_t* root = NULL;
-    RUGA_TRY(load(path, &root));
-    size_t count = json_array_size(json_object_get(root, "file_frames")) + 1;
-    json_decref(root);
-    *frames = count < INT_MAX ? (int)count : INT_MAX;
-    return RUGA_OK;
-}
-
 // ------------------------------------------------------------------------------- mesh
 
 static bool is_straight_on(const double a[3], const double b[3], const double c[3]) {
@@ -460,11 +461,15 @@ done:
     return status;
 }
 
-static ruga_status add_faces(const ruga_crease_pattern* p, ruga_polygons* polygons) {
+// panel [faces]: remeshing keeps the borders of groups, and so the folds.
+static ruga_status add_faces(const ruga_crease_pattern* p, const int* panel, ruga_polygons* polygons) {
     for (int v = 0; v < p->vertex_count; v++) {
         RUGA_TRY(ruga_polygons_add_vertex(polygons, p->position[v]));
     }
     for (int f = 0; f < p->face_count; f++) {
+        char name[32];
+        int length = snprintf(name, sizeof name, "panel %d", panel[f]);
+        RUGA_TRY(ruga_polygons_set_group(polygons, 0, name, (size_t)length));
         RUGA_TRY(ruga_polygons_add(polygons, 0));
         for (int k = p->face_start[f]; k < p->face_start[f + 1]; k++) {
             RUGA_TRY(ruga_polygons_add_corner(polygons, p->corner[k], -1));
@@ -476,11 +481,15 @@ static ruga_status add_faces(const ruga_crease_pattern* p, ruga_polygons* polygo
 static ruga_status mesh_faces(const ruga_crease_pattern* p, const char* path, ruga_mesh* mesh) {
     ruga_polygons polygons;
     ruga_status status = RUGA_OK;
+    int *panel = NULL, count;
     ruga_polygons_begin(&polygons);
-    RUGA_TRY_DONE(add_faces(p, &polygons));
+    RUGA_TRY_DONE(RUGA_NEW(panel, p->face_count));
+    RUGA_TRY_DONE(ruga_crease_pattern_panels(p, &count, panel));
+    RUGA_TRY_DONE(add_faces(p, panel, &polygons));
     RUGA_TRY_DONE(ruga_polygons_finish(&polygons, path, mesh));
 done:
     ruga_polygons_clear(&polygons);
+    ruga_release(panel);
     return status;
 }
 

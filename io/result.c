@@ -193,6 +193,7 @@ static bool make_set(ruga_result* result, int set) {
         break;
     case RUGA_RESULT_ANGLE:
     case RUGA_RESULT_REST_ANGLE:
+    case RUGA_RESULT_SEGMENT_GAP:
         *made = ruga_hdf5_make(result->file, name, type, 2, (hsize_t[]){0, (hsize_t)result->segment_count}, 1, NULL);
         break;
     case RUGA_RESULT_HANDLE_FORCE:
@@ -337,7 +338,8 @@ static bool put_frame(ruga_result* result, const ruga_result_frame* frame, const
     if (result->segment_count > 0 &&
         (!ruga_hdf5_put_row(set[RUGA_RESULT_ANGLE], H5T_NATIVE_DOUBLE, row, frame->crease_angle) ||
          !ruga_hdf5_put_row(set[RUGA_RESULT_REST_ANGLE], H5T_NATIVE_DOUBLE, row, frame->crease_rest) ||
-         !ruga_hdf5_put_row(set[RUGA_RESULT_GAP], H5T_NATIVE_DOUBLE, row, &frame->gap))) {
+         !ruga_hdf5_put_row(set[RUGA_RESULT_GAP], H5T_NATIVE_DOUBLE, row, &frame->gap) ||
+         !ruga_hdf5_put_row(set[RUGA_RESULT_SEGMENT_GAP], H5T_NATIVE_DOUBLE, row, frame->segment_gap))) {
         return false;
     }
     if (result->handle_count > 0 &&
@@ -365,7 +367,7 @@ static ruga_status append(ruga_result* result, const ruga_result_frame* frame, c
 
 ruga_status ruga_result_append(ruga_result* result, const ruga_result_frame* frame) {
     RUGA_ASSERT(frame->position && (result->restart_doubles == 0 || frame->restart));
-    RUGA_ASSERT(result->segment_count == 0 || (frame->crease_angle && frame->crease_rest));
+    RUGA_ASSERT(result->segment_count == 0 || (frame->crease_angle && frame->crease_rest && frame->segment_gap));
     RUGA_ASSERT(result->handle_count == 0 || frame->handle_force);
     RUGA_ASSERT(result->node_count == 0 || (frame->embedded && frame->lattice_position));
     if (result->failed) {
@@ -470,7 +472,7 @@ static ruga_status check_lattice(const char* path, ruga_result_reader* reader,
 }
 
 typedef struct copy_buffers {
-    double *position, *embedded, *lattice, *restart, *angle, *rest, *force;
+    double *position, *embedded, *lattice, *restart, *angle, *rest, *gap, *force;
 } copy_buffers;
 
 // The slot of the frame before the last is copied too where it is whole: then the file is, bit for bit, that
@@ -484,6 +486,7 @@ static ruga_status copy_frames(ruga_result_reader* reader, ruga_result* result, 
                                   .lattice_position = buffers->lattice,
                                   .crease_angle = buffers->angle,
                                   .crease_rest = buffers->rest,
+                                  .segment_gap = buffers->gap,
                                   .handle_force = buffers->force};
         RUGA_TRY(ruga_result_read_frame(reader, frame, &copy.time, buffers->position,
                                         result->node_count > 0 ? buffers->embedded : NULL, &copy.report));
@@ -492,6 +495,7 @@ static ruga_status copy_frames(ruga_result_reader* reader, ruga_result* result, 
         }
         if (result->segment_count > 0) {
             RUGA_TRY(ruga_result_read_creases(reader, frame, buffers->angle, buffers->rest, &copy.gap));
+            RUGA_TRY(ruga_result_read_segment_gaps(reader, frame, buffers->gap));
         }
         if (ruga_result_reader_header(reader)->handle_count > 0) {
             RUGA_TRY(ruga_result_read_handle_force(reader, frame, buffers->force));
@@ -521,6 +525,7 @@ static ruga_status copy_file(ruga_result_reader* reader, ruga_result* result, do
     RUGA_TRY_DONE(RUGA_NEW(buffers.restart, (size_t)result->restart_doubles + 1));
     RUGA_TRY_DONE(RUGA_NEW(buffers.angle, (size_t)result->segment_count));
     RUGA_TRY_DONE(RUGA_NEW(buffers.rest, (size_t)result->segment_count));
+    RUGA_TRY_DONE(RUGA_NEW(buffers.gap, (size_t)result->segment_count));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(buffers.force, 3 * (size_t)result->handle_count));
     RUGA_TRY_DONE(copy_frames(reader, result, &buffers, restart));
     RUGA_TRY_DONE(publish(result));
@@ -531,6 +536,7 @@ done:
     ruga_release(buffers.restart);
     ruga_release(buffers.angle);
     ruga_release(buffers.rest);
+    ruga_release(buffers.gap);
     ruga_release(buffers.force);
     return status;
 }

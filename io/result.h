@@ -51,6 +51,7 @@ typedef struct ruga_result_frame {
     const double* restart; // [restart_doubles]
     const double *crease_angle, *crease_rest; // [S] rad; only with creases
     double gap;                               // m, largest between what is sewn together
+    const double* segment_gap;                // [S] m, at the ends of each segment; only with creases
     const double* handle_force;               // [handles][3] N, only with handles
 } ruga_result_frame;
 
@@ -87,6 +88,8 @@ ruga_status ruga_result_read_frame(ruga_result_reader* reader, int frame, double
                                    double* embedded, ruga_report* report);
 // Creases of a frame: angles and rest angles [S] rad, gap in m; each may be NULL. RUGA_BAD_INPUT without creases.
 ruga_status ruga_result_read_creases(ruga_result_reader* reader, int frame, double* angle, double* rest, double* gap);
+// gap [S] m; of a file that lacks them, the frame's largest for each.
+ruga_status ruga_result_read_segment_gaps(ruga_result_reader* reader, int frame, double* gap);
 // Forces of the handles on the skin, [handles][3] N; zero where the file (of an older version) has none.
 ruga_status ruga_result_read_handle_force(ruga_result_reader* reader, int frame, double* force);
 // Lattice of the file: counts, and node positions of a frame [N][3]; each may be NULL. Without an interior

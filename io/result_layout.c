@@ -14,6 +14,7 @@ static const char* const set_names[RUGA_RESULT_SETS] = {
     "/creases/angle",
     "/creases/rest_angle",
     "/creases/gap",
+    "/creases/segment_gap",
     "/stats/handle_force",
 };
 

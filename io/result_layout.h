@@ -39,6 +39,7 @@ enum {
     RUGA_RESULT_ANGLE, // with creases only
     RUGA_RESULT_REST_ANGLE,
     RUGA_RESULT_GAP,
+    RUGA_RESULT_SEGMENT_GAP,
     RUGA_RESULT_HANDLE_FORCE, // with handles only
     RUGA_RESULT_SETS
 };
@@ -52,7 +53,7 @@ static inline bool ruga_result_set_is_interior(int set) {
 }
 
 static inline bool ruga_result_set_is_crease(int set) {
-    return set == RUGA_RESULT_ANGLE || set == RUGA_RESULT_REST_ANGLE || set == RUGA_RESULT_GAP;
+    return set >= RUGA_RESULT_ANGLE && set <= RUGA_RESULT_SEGMENT_GAP;
 }
 
 bool ruga_result_put_report(const hid_t* sets, hsize_t row, const ruga_report* report);

@@ -11,6 +11,7 @@
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -165,9 +166,22 @@ static ruga_status get_names(ruga_hdf5* hdf5, hid_t file, mesh_arrays* arrays) {
     return status;
 }
 
+// Nothing that reads a result has to reckon with what is no place. `where`: "frame 3".
+static ruga_status check_places(const char* path, const char* where, int vertex_count, const double* x) {
+    const double farthest = 1e30; // m; its square is a number, and it fits into a float
+    for (int i = 0; x && i < 3 * vertex_count; i++) {
+        if (!(fabs(x[i]) <= farthest)) {
+            return ruga_fail(RUGA_BAD_INPUT, "%s: %s: coordinate %c of vertex %d is %g, which is no place",
+                             path, where, "xyz"[i % 3], i / 3, x[i]);
+        }
+    }
+    return RUGA_OK;
+}
+
 static ruga_status get_mesh_arrays(ruga_hdf5* hdf5, hid_t file, mesh_arrays* a) {
     int rows;
     RUGA_TRY(get_reals(hdf5, file, "/mesh/rest", 3, &a->def.vertex_count, &a->position));
+    RUGA_TRY(check_places(hdf5->path, "/mesh/rest", a->def.vertex_count, a->position));
     RUGA_TRY(get_integers(hdf5, file, "/mesh/triangles", 3, -1, &a->def.triangle_count, &a->triangles));
     RUGA_TRY(
         get_integers(hdf5, file, "/mesh/source_vertex", 1, a->def.vertex_count, &rows, &a->source_vertex));
@@ -421,6 +435,7 @@ static bool set_fits(const ruga_result_reader* reader, int set) {
         return ruga_hdf5_shape(reader->set[set], 1, size) && size[0] == 2;
     case RUGA_RESULT_ANGLE:
     case RUGA_RESULT_REST_ANGLE:
+    case RUGA_RESULT_SEGMENT_GAP:
         return ruga_hdf5_shape(reader->set[set], 2, size) && size[0] >= frames &&
                size[1] == (hsize_t)reader->creases.segment_count;
     case RUGA_RESULT_HANDLE_FORCE:
@@ -434,6 +449,7 @@ static bool set_fits(const ruga_result_reader* reader, int set) {
 static bool set_may_lack(const ruga_result_reader* reader, int set) {
     return (ruga_result_set_is_interior(set) && !reader->has_interior) ||
            (ruga_result_set_is_crease(set) && !reader->header.creases) ||
+           (set == RUGA_RESULT_SEGMENT_GAP && !exists(reader->file, "/creases", ruga_result_set_name(set))) ||
            ((set == RUGA_RESULT_HANDLE_FORCE || set == RUGA_RESULT_STATS + RUGA_RESULT_COLUMN_energy_hinge) &&
             !exists(reader->file, "/stats", ruga_result_set_name(set)));
 }
@@ -598,7 +614,16 @@ ruga_status ruga_result_read_frame(ruga_result_reader* reader, int frame, double
               (!report || ruga_result_get_report(reader->set, (hsize_t)frame, report));
     ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "a frame cannot be read");
     ruga_hdf5_end(&hdf5);
-    return status;
+    RUGA_TRY(status);
+    char where[64];
+    (void)snprintf(where, sizeof where, "frame %d", frame);
+    if (time && !isfinite(*time)) {
+        return ruga_fail(RUGA_BAD_INPUT, "%s: %s: its time is %g: the file is damaged", reader->path, where,
+                         *time);
+    }
+    RUGA_TRY(check_places(reader->path, where, reader->mesh.vertex_count, position));
+    (void)snprintf(where, sizeof where, "frame %d, the interior's surface", frame);
+    return check_places(reader->path, where, reader->mesh.vertex_count, embedded);
 }
 
 ruga_status ruga_result_read_creases(ruga_result_reader* reader, int frame, double* angle, double* rest, double* gap) {
@@ -612,6 +637,24 @@ ruga_status ruga_result_read_creases(ruga_result_reader* reader, int frame, doub
               (!rest || get_row(reader, RUGA_RESULT_REST_ANGLE, frame, rest)) &&
               (!gap || get_row(reader, RUGA_RESULT_GAP, frame, gap));
     ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "the creases of a frame cannot be read");
+    ruga_hdf5_end(&hdf5);
+    return status;
+}
+
+ruga_status ruga_result_read_segment_gaps(ruga_result_reader* reader, int frame, double* gap) {
+    if (reader->set[RUGA_RESULT_SEGMENT_GAP] < 0) {
+        double largest;
+        RUGA_TRY(ruga_result_read_creases(reader, frame, NULL, NULL, &largest));
+        for (int s = 0; s < reader->header.creases->segment_count; s++) {
+            gap[s] = largest;
+        }
+        return RUGA_OK;
+    }
+    RUGA_TRY(check_frame(reader, frame));
+    ruga_hdf5 hdf5;
+    ruga_hdf5_begin(&hdf5, reader->path);
+    bool ok = get_row(reader, RUGA_RESULT_SEGMENT_GAP, frame, gap);
+    ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "the gaps of a frame cannot be read");
     ruga_hdf5_end(&hdf5);
     return status;
 }

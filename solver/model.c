@@ -9,6 +9,8 @@
 #include "core/vec3.h"
 #include "mesh/doctor.h"
 #include "shell/shell.h"
+#include "solver/anchor.h"
+#include "solver/start.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,7 +31,11 @@ static ruga_status check_motion(const ruga_model_def* def) {
     const char* trouble = NULL;
     if (s->motion != RUGA_SKIN_DYNAMIC) {
         const ruga_start_def* start = &def->start;
-        bool started = start->fold != 0 || start->cone != 0 || ruga_norm(start->velocity) > 0;
+        if (def->has_interior && start->fold != 0) {
+            return ruga_fail(RUGA_BAD_INPUT,
+                             "start.fold: needs interior: none; a skin starts on its interior");
+        }
+        bool started = start->cone != 0 || ruga_norm(start->velocity) > 0 || ruga_norm(start->spin) > 0;
         for (int i = 0; i < def->crease_count; i++) {
             if (def->creases[i].start > 0) {
                 return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.motion: dynamic", i);
@@ -40,8 +46,8 @@ static ruga_status check_motion(const ruga_model_def* def) {
         }
         return s->model == RUGA_SKIN_SPRINGS
                    ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
-               : started ? ruga_fail(RUGA_BAD_INPUT,
-                                     "start: needs skin.motion: dynamic; a static skin starts at rest")
+               : started ? ruga_fail(RUGA_BAD_INPUT, "start: cone, velocity and spin need skin.motion: "
+                                                     "dynamic; a static skin starts at rest")
                          : RUGA_OK;
     }
     if (def->has_interior) {
@@ -65,9 +71,10 @@ static ruga_status check_motion(const ruga_model_def* def) {
     RUGA_TRY(require(positive(s->density), "skin.density", s->density, "above 0 where the skin moves"));
     RUGA_TRY(require(s->damping >= 0 && isfinite(s->damping), "skin.damping", s->damping, "0 or above"));
     RUGA_TRY(require(s->drag >= 0 && isfinite(s->drag), "skin.drag", s->drag, "0 or above"));
-    RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
     RUGA_TRY(require(isfinite(ruga_norm(def->start.velocity)), "start.velocity",
                      ruga_norm(def->start.velocity), "finite"));
+    RUGA_TRY(
+        require(isfinite(ruga_norm(def->start.spin)), "start.spin", ruga_norm(def->start.spin), "finite"));
     return require(def->start.cone >= 0 && def->start.cone < 2 * RUGA_PI, "start.cone", def->start.cone,
                    "between 0 and a whole turn");
 }
@@ -82,6 +89,10 @@ static ruga_status check_material(const ruga_model_def* def) {
     RUGA_TRY(require(s->density >= 0 && isfinite(s->density), "skin.density", s->density, "0 or above"));
     for (int i = 0; i < 2 && !s->vertex_growth; i++) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
+    }
+    RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
+    if (def->start.fold != 0 && def->crease_count == 0) {
+        return ruga_fail(RUGA_BAD_INPUT, "start.fold: there are no creases to fold about");
     }
     RUGA_TRY(check_motion(def));
     RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation",
@@ -164,7 +175,7 @@ static ruga_status check_mesh(const ruga_model* model) {
 
 static ruga_status copy_handles(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(RUGA_NEW_ZERO(model->handles, def->handle_count + 1));
-    model->handles[def->handle_count] = ruga_default_handle_def(); // of hold_in_space
+    model->handles[def->handle_count] = ruga_default_handle_def(); // of solver/anchor.c
     model->handle_count = def->handle_count;
     for (int i = 0; i < def->handle_count; i++) {
         ruga_handle_def* handle = &model->handles[i];
@@ -315,50 +326,6 @@ static void hold_selected(ruga_model* model, int h, int count, const int* select
     hold_pieces(model, h, in);
 }
 
-// The uncut triangle nearest to the middle; any where all are cut.
-static int middle_triangle(const ruga_model* model) {
-    double nearest = INFINITY;
-    int best = 0;
-    for (int p = 0; p < model->mesh.triangle_count; p++) {
-        const int* t = model->mesh.triangle + 3 * (size_t)p;
-        double off[3] = {-model->center[0], -model->center[1], -model->center[2]};
-        for (int i = 0; i < 3; i++) {
-            ruga_add_scaled(1.0 / 3, model->mesh.position + 3 * (size_t)t[i], off);
-        }
-        double far = ruga_norm(off) + (model->creases->cut.piece[p].fraction < 1 ? model->extent : 0);
-        if (far < nearest) {
-            nearest = far;
-            best = p;
-        }
-    }
-    return best;
-}
-
-static int largest_component(const double v[3]) {
-    return fabs(v[0]) >= fabs(v[1]) && fabs(v[0]) >= fabs(v[2]) ? 0 : fabs(v[1]) >= fabs(v[2]) ? 1 : 2;
-}
-
-// A folding sheet that nothing holds would drift and turn: six components of one triangle are held, which
-// takes no force. Its first corner; of the second what is across the edge between them; of the third the
-// height.
-static void hold_in_space(ruga_model* model) {
-    const int* t = model->mesh.triangle + 3 * (size_t)middle_triangle(model);
-    const double* x[3];
-    double edge[3], normal[3];
-    for (int i = 0; i < 3; i++) {
-        x[i] = model->mesh.position + 3 * (size_t)t[i];
-    }
-    ruga_subtract(x[1], x[0], edge);
-    ruga_triangle_normal(x[0], x[1], x[2], normal);
-    int along = largest_component(edge), up = largest_component(normal);
-    for (int axis = 0; axis < 3; axis++) {
-        model->skin_handle[3 * (size_t)t[0] + (size_t)axis] = model->handle_count;
-        model->skin_handle[3 * (size_t)t[1] + (size_t)axis] = axis == along ? -1 : model->handle_count;
-        model->skin_handle[3 * (size_t)t[2] + (size_t)axis] = axis == up ? model->handle_count : -1;
-    }
-    model->any_skin_held = true;
-}
-
 // Which handle holds which component of the skin; the first one wins.
 static ruga_status build_skin_holds(ruga_model* model) {
     ruga_status status = RUGA_OK;
@@ -381,10 +348,6 @@ static ruga_status build_skin_holds(ruga_model* model) {
             goto done;
         }
         hold_selected(model, h, count, selected, in);
-    }
-    if (model->creases && !model->has_interior && !model->any_skin_held &&
-        model->skin.motion != RUGA_SKIN_DYNAMIC) {
-        hold_in_space(model);
     }
 done:
     ruga_release(selected);
@@ -509,7 +472,7 @@ static ruga_status build_coupling(ruga_model* model) {
     if (model->edges < 3 && !model->solver.allow_coarse) {
         return ruga_fail(
             RUGA_BAD_INPUT,
-            "the mesh has %.2g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
+            "the mesh has %.3g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
             "least 3 are needed and 8 are good: remesh with edge %.3g m, or set solver.allow_coarse",
             model->edges, model->mean_edge, model->edges_wavelength, model->edges_wavelength / 8);
     }
@@ -525,9 +488,10 @@ static ruga_status build_coupling(ruga_model* model) {
 static ruga_status build_interior(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(ruga_progress("building the lattice", 0));
     RUGA_TRY(ruga_lattice_create(model->sheet, &model->connectivity, &model->lattice_def, &model->lattice));
-    if (!ruga_model_is_prescribed(model)) {
-        RUGA_TRY(ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles,
-                                  &model->rows));
+    RUGA_TRY(
+        ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles, &model->rows));
+    if (ruga_model_is_prescribed(model)) { // only to see that each region is somewhere
+        ruga_rows_clear(&model->rows);
     }
     if (model->creases) {
         RUGA_TRY(ruga_lattice_copy_vertices(&model->lattice, model->mesh.vertex_count,
@@ -591,6 +555,7 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
     RUGA_TRY_DONE(build_mesh(model));
     RUGA_TRY_DONE(def->crease_count > 0 ? build_creases(def, model)
                                         : ruga_variation_create(&def->skin, model));
+    RUGA_TRY_DONE(ruga_start_create(model));
     RUGA_TRY_DONE(build_skin_holds(model));
     RUGA_TRY_DONE(build_loads(model));
     if (model->has_interior) {
@@ -600,6 +565,9 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
         }
     } else {
         model->solves_skin = model->skin.motion != RUGA_SKIN_DYNAMIC;
+        if (model->skin.motion == RUGA_SKIN_STATIC || (model->solves_skin && model->creases)) {
+            RUGA_TRY_DONE(ruga_model_anchor(model));
+        }
     }
     model->seam = model->clusters.count;
     if (model->creases) {
@@ -627,6 +595,7 @@ void ruga_model_destroy(ruga_model** model_pointer) {
     ruga_variation_clear(&model->variation);
     ruga_release(model->vertex_area);
     ruga_release(model->skin_handle);
+    ruga_release(model->started);
     ruga_loads_destroy(&model->loads);
     ruga_foundation_clear(&model->foundation);
     ruga_clusters_clear(&model->clusters);

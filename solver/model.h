@@ -47,6 +47,7 @@ struct ruga_model {
     int frames;
     double gravity[3];
     ruga_start_def start;
+    double* started; // [V][3] m, a free skin's shape at time 0; NULL = the mesh's (start.h)
     int keyframe_count;
     ruga_keyframe_def* keyframes;
     ruga_follow follow; // count 0 where the interior follows no surface

@@ -10,12 +10,10 @@
 
 #include "core/memory.h"
 #include "core/vec3.h"
-#include "crease/pose.h"
+#include "solver/start.h"
 
 #include <math.h>
 #include <string.h>
-
-static const double MISFIT = 1e-9; // edges
 
 struct ruga_moving {
     const ruga_model* model;
@@ -109,21 +107,7 @@ done:
 
 // ---- start ---------------------------------------------------------------------------------------------
 
-static ruga_status fold(ruga_moving* m, double* x) {
-    const ruga_creases* creases = m->model->creases;
-    double* turn = NULL;
-    RUGA_TRY(RUGA_NEW_ZERO(turn, creases->cut.segment_count));
-    for (int h = 0; h < creases->segment_count; h++) {
-        turn[creases->segment[h]] =
-            m->model->start.fold * (ruga_crease_rest_at(creases, h, 0) - creases->drawn[h]);
-    }
-    ruga_status status =
-        ruga_cut_fold(&creases->raster, &creases->cut, turn, MISFIT * m->model->mean_edge, x);
-    ruga_release(turn);
-    return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "start.fold") : status;
-}
-
-// Rolled copies of one place may part a little: brought together, held ones too.
+// Brings rolled copies together, held ones too.
 static ruga_status close_gaps(const ruga_moving* m, double* x) {
     ruga_status status = RUGA_OK;
     ruga_stitch* stitch = NULL;
@@ -146,27 +130,23 @@ static void take_angles(ruga_moving* m) {
     const ruga_creases* creases = m->model->creases;
     double* angle = ruga_dynamic_elastic(m->dynamic)->angle;
     for (int h = 0; creases && h < creases->hinge_count; h++) {
-        double turn = h < creases->segment_count ? ruga_crease_rest_at(creases, h, 0) - creases->drawn[h] : 0;
-        angle[creases->segment[h]] = creases->drawn[h] + m->model->start.fold * turn;
-        m->skin->hinges->near[h] = angle[creases->segment[h]];
-        m->skin->hinges->rest[h] = angle[creases->segment[h]]; // at rest as it starts
+        angle[creases->segment[h]] = ruga_start_angle(m->model, h);
+    }
+    if (creases) {
+        ruga_start_hinges(m->model, m->skin->hinges);
     }
 }
 
 ruga_status ruga_moving_start(ruga_moving* m, double* x) {
     const ruga_start_def* start = &m->model->start;
-    memcpy(x, m->model->mesh.position, 3 * (size_t)m->nodes * sizeof *x);
-    if (m->model->creases && start->fold != 0) {
-        RUGA_TRY(fold(m, x));
-    }
-    if (start->cone > 0) {
-        ruga_roll_cone(m->nodes, start->cone, x);
-    }
+    memcpy(x, ruga_start_shape(m->model), 3 * (size_t)m->nodes * sizeof *x);
     if (m->model->creases) {
         RUGA_TRY(close_gaps(m, x));
     }
     for (int i = 0; i < 3 * m->nodes; i++) {
-        m->velocity[i] = m->model->skin_handle[i] >= 0 ? 0 : start->velocity[i % 3];
+        double turn[3];
+        ruga_cross(start->spin, x + 3 * (size_t)(i / 3), turn);
+        m->velocity[i] = m->model->skin_handle[i] >= 0 ? 0 : start->velocity[i % 3] + turn[i % 3];
     }
     ruga_dynamic_start(m->dynamic, x, m->velocity);
     take_angles(m);
@@ -267,6 +247,14 @@ ruga_status ruga_moving_step(ruga_moving* m, double time, double* x, ruga_report
     report->linear_iterations = done.damping_products;
     put_energies(m, time + m->model->step, x, &done.elastic, report);
     return RUGA_OK;
+}
+
+ruga_dynamic* ruga_moving_dynamic(ruga_moving* moving) {
+    return moving->dynamic;
+}
+
+const double* ruga_moving_velocity(const ruga_moving* moving) {
+    return moving->velocity;
 }
 
 // ---- restart -------------------------------------------------------------------------------------------

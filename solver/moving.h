@@ -15,12 +15,14 @@ typedef struct ruga_moving ruga_moving;
 ruga_status ruga_moving_create(const ruga_model* model, ruga_skin* skin, ruga_moving** moving);
 void ruga_moving_destroy(ruga_moving** moving);
 // The shape and, with its velocity, the motion that the model starts with; x [nodes][3] is SET.
-// RUGA_BAD_INPUT where panels cannot be folded as model.start says.
 ruga_status ruga_moving_start(ruga_moving* moving, double* x);
 // A frame from `time` on.
 ruga_status ruga_moving_step(ruga_moving* moving, double time, double* x, ruga_report* report);
 // Energies as they stand at x and `time`.
 void ruga_moving_measure(ruga_moving* moving, double time, const double* x, ruga_report* report);
+
+ruga_dynamic* ruga_moving_dynamic(ruga_moving* moving);
+const double* ruga_moving_velocity(const ruga_moving* moving); // [nodes][3] m/s
 
 // Everything besides x and the hinges that the next frame depends on: velocities among them.
 int ruga_moving_restart_size(const ruga_model* model);

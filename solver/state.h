@@ -40,6 +40,8 @@ const double* ruga_state_crease_angles(const ruga_state* state);
 const double* ruga_state_crease_rests(const ruga_state* state);
 // Largest distance, m, between copies of one place.
 double ruga_state_gap(const ruga_state* state);
+// That at both ends of each of the creases' segments: gap [segments] is SET.
+void ruga_state_segment_gaps(const ruga_state* state, double* gap);
 // The forces of handles on the skin, [handles][3] N.
 ruga_status ruga_state_handle_forces(ruga_state* state, double* force);
 

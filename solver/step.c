@@ -10,6 +10,7 @@
 #include "core/vec3.h"
 #include "lattice/motion.h"
 #include "lattice/svd3.h"
+#include "solver/start.h"
 #include "solver/state.h"
 
 #include <math.h>
@@ -51,9 +52,12 @@ static void show(ruga_state* state) {
 static void set_start(ruga_state* state) {
     const ruga_model* model = state->model;
     size_t n = 3 * (size_t)model->mesh.vertex_count;
-    memcpy(state->x, model->mesh.position, n * sizeof *state->x);
-    memcpy(state->embedded, model->mesh.position, n * sizeof *state->x);
+    memcpy(state->x, ruga_start_shape(model), n * sizeof *state->x);
+    memcpy(state->embedded, ruga_start_shape(model), n * sizeof *state->x);
     if (!model->has_interior) {
+        if (state->skin->hinges) {
+            ruga_start_hinges(model, state->skin->hinges);
+        }
         return;
     }
     memcpy(state->q, model->lattice.rest, 3 * (size_t)model->lattice.node_count * sizeof *state->q);
@@ -148,6 +152,15 @@ const double* ruga_state_crease_rests(const ruga_state* state) {
 
 double ruga_state_gap(const ruga_state* state) {
     return state->model->creases ? ruga_cut_gap(&state->model->creases->cut, state->x) : 0;
+}
+
+void ruga_state_segment_gaps(const ruga_state* state, double* gap) {
+    const ruga_creases* creases = state->model->creases;
+    for (int h = 0; creases && h < creases->segment_count; h++) {
+        const int* end = creases->cut.segment[creases->segment[h]].end;
+        gap[h] = fmax(ruga_cut_gap_at(&creases->cut, end[0], state->x),
+                      ruga_cut_gap_at(&creases->cut, end[1], state->x));
+    }
 }
 
 ruga_status ruga_state_handle_forces(ruga_state* state, double* force) {
@@ -285,12 +298,10 @@ static int count_substeps(ruga_state* state, const double* from, const double* t
     job.position = to;
     ruga_parallel_for(mesh->triangle_count, 4096, triangle_strains, &job);
     for (int f = 0; f < mesh->triangle_count; f++) {
-        const int* t = mesh->triangle + 3 * (size_t)f;
         double critical = local ? local[f] : model->critical_strain;
-        double parts = triangle_parts(before[f], state->strain[f], critical), normal[3];
-        ruga_triangle_normal(mesh->position + 3 * (size_t)t[0], mesh->position + 3 * (size_t)t[1],
-                             mesh->position + 3 * (size_t)t[2], normal);
-        double area = 0.5 * ruga_norm(normal) * (model->creases ? model->creases->cut.piece[f].fraction : 1);
+        double parts = triangle_parts(before[f], state->strain[f], critical);
+        double area =
+            ruga_mesh_triangle_area(mesh, f) * (model->creases ? model->creases->cut.piece[f].fraction : 1);
         area_of_parts[(int)fmin(ceil(fmax(parts, 1) - 1e-9), MAX_SUBSTEPS)] += area;
         total += area;
     }
@@ -329,7 +340,7 @@ static void set_handle_targets(ruga_state* state) {
                 continue;
             }
             double target[3];
-            ruga_handle_target(&model->handles[h], state->skin->time, model->mesh.position + 3 * (size_t)v,
+            ruga_handle_target(&model->handles[h], state->skin->time, ruga_start_shape(model) + 3 * (size_t)v,
                                target);
             bool follows = model->has_interior && model->handles[h].hold != RUGA_HOLD_SKIN;
             state->skin->target[i] = follows ? state->embedded[i] : target[axis];

@@ -240,13 +240,14 @@ typedef struct ruga_crease_def {
     double hardening; // >= 0: growth of the yield angle for each rad of plastic turning
 } ruga_crease_def;
 
-// How a skin in dynamic motion begins: folded flat panels, then rolled, with a velocity where nothing holds
-// it.
+// How a free skin begins: folded flat panels; in dynamic motion then rolled, with a velocity where nothing
+// holds it.
 typedef struct ruga_start_def {
     double fold; // part of the creases' rest angles at time 0 by which panels are turned; 0 = as the mesh is
     double
         cone; // rad: a sector of the plane z = 0 about the origin, of this angle, closes to a cone; 0 = none
     double velocity[3]; // m/s
+    double spin[3];     // rad/s, about the origin; added to it
 } ruga_start_def;
 
 typedef struct ruga_model_def {
