@@ -77,8 +77,6 @@ ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp);
 // Assembles, adds shift times vertex area to the diagonal, and factorises. See factor_right.
 ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift);
 ruga_status ruga_skin_refactor(ruga_skin* skin, double shift); // the same K with another shift
-// Without a shift and in single precision, in half of the time: an initial inverse, whose inertia certifies nothing.
-ruga_status ruga_skin_factor_single(ruga_skin* skin, const double* x, double clamp);
 // Tries clamp 0.5, then 1, in single precision while that serves, then in double, then shifts: the inertia is right.
 ruga_status ruga_skin_factor_convex(ruga_skin* skin, const double* x);
 double ruga_skin_shift_unit(const ruga_model* model); // N/m^3, small against a wrinkle's: the unit of shifts
