@@ -47,7 +47,8 @@ ruga_status ruga_factor_numeric_single(ruga_factor* factor, const double* values
 
 // x = A^-1 b; b and x [n], may be the same. Only after a numeric factorisation with success (LDL: always;
 // where pivots are zero, b must be consistent). Refined where the residual is above 1e-12 |b| and round-off
-// in x does not explain it (LDL). One call at a time on the same factor: the work space is part of it.
+// in x does not explain it (LDL), or until round-off does (LDL_SINGLE). One call at a time on the same
+// factor: the work space is part of it.
 ruga_status ruga_factor_solve(ruga_factor* factor, const double* b, double* x);
 
 // LDL: x near A^-1 b, without refinement: with LDL_SINGLE to single precision, and as fast as the memory

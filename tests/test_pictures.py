@@ -288,6 +288,8 @@ class Pictures(unittest.TestCase):
         page = self.read("page.html").decode()
         self.assertNotRegex(page, r"""(?i)(?:src|href)\s*=\s*["']?https?:""")
         self.assertEqual(len(re.findall(r'<script type="application/octet-stream" id="', page)), 4)
+        shutil.copy(self.path("sheet.h5"), self.path("no utf \udcff.h5"))
+        self.ruga("view", "no utf \udcff.h5", "-o", "page.html")
         self.ruga("view", "folded.h5", "-o", "folded.html")
         facts = json.loads(re.search(r'<script type="application/json"[^>]*>(.*?)</script>',
                                      self.read("folded.html").decode(), re.S).group(1))
