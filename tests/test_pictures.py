@@ -252,7 +252,7 @@ class Pictures(unittest.TestCase):
         with open(self.path("wide.csv"), "w", encoding="utf-8") as file:  # more than a page holds
             file.write(",".join(f"c{k}" for k in range(20)) + "\n" + "".join(
                 ",".join(str(row * (k % 3)) for k in range(20)) + "\n" for row in (1, 2, 3)))
-        self.assertIn("7 of its 19 columns", self.ruga("plot", "wide.csv", "--x", "c1", "-o", "w.svg").stderr)
+        self.assertIn("7 of its 19 columns", self.call("plot", "wide.csv", "--x", "c1", "-o", "w.svg").stderr)
         self.refused("plot", "t.csv", "--what", "wavelengt", "-o", "v.svg", saying="did you mean wavelength")
         self.refused("plot", "t.csv", "--what", "outcome", "-o", "v.svg", saying="no point to draw")
         self.refused("plot", "none.csv", "-o", "v.svg", saying="cannot be read")
