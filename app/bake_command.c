@@ -9,6 +9,7 @@
 #include "app/frames.h"
 #include "core/memory.h"
 #include "core/vec3.h"
+#include "io/file_name.h"
 #include "io/image.h"
 #include "io/units.h"
 #include "io/writer.h"
@@ -249,12 +250,6 @@ static ruga_status bake_frame(job* j, int frame, const ruga_atlas* atlas, float*
     if (!interior) {
         memcpy(j->embedded, j->position, numbers * sizeof *j->embedded);
     }
-    for (size_t i = 0; i < numbers; i++) {
-        if (!isfinite(j->position[i]) || !isfinite(j->embedded[i])) {
-            return ruga_fail(RUGA_BAD_INPUT, "%s: frame %d: vertex %zu has a coordinate that is not a number",
-                             ruga_operand(j->arguments), frame, i / 3);
-        }
-    }
     if (j->base) {
         carry_target(j);
     }
@@ -267,18 +262,21 @@ static ruga_status bake_frame(job* j, int frame, const ruga_atlas* atlas, float*
 
 // ---- writing -------------------------------------------------------------------------------------------
 
-// To what a file holds: displacement in units (EXR) or 0 to 1 (PNG), normals as colours.
-static void encode(const job* j, double largest, float* pixel) {
+// A number x of the file stands for offset + scale x: displacement in m, tension, a normal's part or the part
+// of the sky. In an EXR displacements are in the unit; in a PNG 0 to 1 spans what is between -largest and it.
+static void choose_scale(const job* j, double largest, double* scale, double* offset) {
+    bool spans = has_range(j) && !ruga_image_is_exr(j->pattern);
+    largest = j->def.map == RUGA_BAKE_NORMAL ? 1 : largest;
+    *scale = spans || j->def.map == RUGA_BAKE_NORMAL ? 2 * largest
+             : j->def.map == RUGA_BAKE_DISPLACEMENT  ? j->unit
+                                                     : 1;
+    *offset = spans || j->def.map == RUGA_BAKE_NORMAL ? -largest : 0;
+}
+
+static void encode(const job* j, double scale, double offset, float* pixel) {
     size_t count = 3 * (size_t)j->size * (size_t)j->size;
-    bool exr = ruga_image_is_exr(j->pattern);
-    double scale = j->def.map == RUGA_BAKE_NORMAL         ? 0.5
-                   : !has_range(j)                        ? 1
-                   : !exr                                 ? (largest > 0 ? 0.5 / largest : 0)
-                   : j->def.map == RUGA_BAKE_DISPLACEMENT ? 1 / j->unit
-                                                          : 1;
-    double shift = j->def.map == RUGA_BAKE_NORMAL || (has_range(j) && !exr) ? 0.5 : 0;
     for (size_t i = 0; i < count; i++) {
-        pixel[i] = (float)(shift + scale * (double)pixel[i]);
+        pixel[i] = (float)(scale > 0 ? ((double)pixel[i] - offset) / scale : 0.5);
     }
 }
 
@@ -292,16 +290,20 @@ static double largest_of(const job* j, const float* pixel) {
 
 static ruga_status write_map(job* j, int number, float* pixel, char** path) {
     char comment[160];
-    double largest = j->largest > 0 ? j->largest : largest_of(j, pixel);
+    double scale, offset, largest = j->largest > 0 ? j->largest : largest_of(j, pixel);
     static const char* const meaning[] = {"displacement along tangent, bitangent and normal",
                                           "normal in tangent space",
                                           "principal stretches and area ratio less 1", "ambient occlusion"};
     (void)snprintf(comment, sizeof comment, "Ruga, %s, unit %.9g m", meaning[j->def.map], j->unit);
-    encode(j, largest, pixel);
+    choose_scale(j, largest, &scale, &offset);
+    encode(j, scale, offset, pixel);
     ruga_image image = {.width = j->size,
                         .height = j->size,
                         .pixel = pixel,
                         .comment = comment,
+                        .scale = scale,
+                        .offset = offset,
+                        .unit = j->def.map == RUGA_BAKE_DISPLACEMENT ? "m" : "1",
                         .half = ruga_given(j->arguments, "--half")};
     RUGA_TRY(ruga_frame_path(j->pattern, number, path));
     RUGA_TRY(ruga_image_write(*path, &image));
@@ -451,12 +453,10 @@ static json_t* describe_blend(job* j, json_t* names) {
 // "wrinkles_%d.exr" -> "wrinkles_weights.json"
 static ruga_status name_weights(const job* j, char** path) {
     size_t size = strlen(j->pattern) + 32;
-    const char *place = strchr(j->pattern, '%'), *dot = strrchr(j->pattern, '.');
-    while (place && place[1 + strspn(place + 1, "0123456789")] != 'd') {
-        place = strchr(place + 1, '%');
-    }
+    size_t length = 0;
+    const char *place = ruga_file_name_place(j->pattern, &length), *dot = strrchr(j->pattern, '.');
     RUGA_ASSERT(place && dot > place);
-    const char* rest = place + 2 + strspn(place + 1, "0123456789");
+    const char* rest = place + length;
     RUGA_TRY(RUGA_NEW(*path, size));
     (void)snprintf(*path, size, "%.*sweights%.*s.json", (int)(place - j->pattern), j->pattern,
                    (int)(dot - rest), rest);

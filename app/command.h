@@ -79,6 +79,8 @@ extern const char ruga_help_about[], ruga_help_session[];
 void ruga_print_help(void);
 void ruga_print_command_help(const ruga_command* command);
 void ruga_print_version(void);
+// Names and versions of all libraries but HDF5, with `between` between them.
+void ruga_library_versions(const char* between, char* text, size_t size);
 
 // Appends ", did you mean X?" to a sentence about an unknown word; nothing where no name is near.
 // names: "a|b|c".

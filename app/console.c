@@ -45,16 +45,18 @@ void ruga_warn_of_scene(const ruga_arguments* arguments, const ruga_scene* scene
     }
 }
 
-void ruga_warn_of_handles(const ruga_arguments* arguments, const ruga_model* model) {
+void ruga_judge_handles(const ruga_model* model, char* sentence, size_t size) {
     const double few = 3;
     int pair[2];
     double cells = ruga_rows_nearest(&model->rows, &model->lattice, model->handles, pair);
+    sentence[0] = '\0';
     if (cells < few) {
-        ruga_warn(arguments,
-                  "handles[%d] and handles[%d] move differently within %.2g cells of one another, where the "
-                  "lattice has no "
-                  "room to follow both: slow, and stiff; lattice.cells: %d or more would give it",
-                  pair[0], pair[1], cells, (int)ceil(model->lattice_def.cells * few / fmax(cells, 1)));
+        (void)snprintf(
+            sentence, size,
+            "handles.%d and handles.%d move differently within %.2g cells of one another, where the "
+            "lattice has no room to follow both: slow, and stiff; lattice.cells: %d or more would "
+            "give it",
+            pair[0], pair[1], cells, (int)ceil(model->lattice_def.cells * few / fmax(cells, 1)));
     }
 }
 

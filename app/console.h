@@ -19,8 +19,9 @@ void ruga_warn(const ruga_arguments* arguments, const char* format, ...)
     __attribute__((format(printf, 2, 3)));
 // What reading the scene had to say.
 void ruga_warn_of_scene(const ruga_arguments* arguments, const ruga_scene* scene);
-// Where handles that move apart lie so close that the lattice cannot follow both without great effort.
-void ruga_warn_of_handles(const ruga_arguments* arguments, const ruga_model* model);
+// Where handles that move apart lie so close that the lattice cannot follow both without great effort: a
+// sentence. Otherwise "".
+void ruga_judge_handles(const ruga_model* model, char* sentence, size_t size);
 // Always: "ruga: ..." to stderr.
 void ruga_complain(const char* format, ...) __attribute__((format(printf, 1, 2)));
 

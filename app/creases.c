@@ -57,16 +57,6 @@ ruga_status ruga_crease_table_create(const ruga_model* model, ruga_crease_table*
     return status;
 }
 
-// Loads on what no handle holds are taken by what keeps it from drifting.
-static bool is_loaded(const ruga_model* model) {
-    bool loaded = ruga_norm(model->gravity) > 0;
-    for (int h = 0; h < model->handle_count; h++) {
-        ruga_handle_kind kind = model->handles[h].kind;
-        loaded = loaded || (kind != RUGA_HANDLE_FIX && kind != RUGA_HANDLE_MOVE);
-    }
-    return loaded;
-}
-
 // Of all curves that share a trouble, the first is named.
 void ruga_warn_of_creases(const ruga_arguments* arguments, const ruga_model* model) {
     const ruga_raster* raster = model->creases ? &model->creases->raster : NULL;
@@ -94,12 +84,5 @@ void ruga_warn_of_creases(const ruga_arguments* arguments, const ruga_model* mod
                   "(%d of these)",
                   model->creases->law[raster->curve[first[1]].label].name, 1e3 * raster->facts[first[1]].left,
                   1e3 * raster->facts[first[1]].length, part);
-    }
-    if (model->parts_in_space > 0 && is_loaded(model)) {
-        ruga_warn(
-            arguments,
-            "no handle holds the sheet, or %d of its parts: a triangle near the middle is held instead, "
-            "against gravity and loads, too",
-            model->parts_in_space);
     }
 }

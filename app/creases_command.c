@@ -9,6 +9,7 @@
 #include "core/vec3.h"
 #include "crease/pattern.h"
 #include "crease/ridge.h"
+#include "io/file_name.h"
 #include "io/fold.h"
 
 #include <math.h>
@@ -64,16 +65,11 @@ static bool is_pattern(const ruga_mesh* mesh) {
     return fmax(fabs(low[2]), fabs(high[2])) <= 1e-9 * ruga_distance(low, high);
 }
 
-static bool ends_with(const char* path, const char* ending) {
-    const char* dot = strrchr(path, '.');
-    return dot && strcmp(dot, ending) == 0;
-}
-
 static ruga_status check_output(const char* path, const ruga_mesh* mesh) {
-    if (!ends_with(path, ".fold") && !ends_with(path, ".svg")) {
+    if (!ruga_file_name_ends(path, ".fold") && !ruga_file_name_ends(path, ".svg")) {
         return ruga_fail(RUGA_BAD_INPUT, "%s: curves are written as .fold or .svg", path);
     }
-    if (ends_with(path, ".svg") && !is_pattern(mesh)) {
+    if (ruga_file_name_ends(path, ".svg") && !is_pattern(mesh)) {
         return ruga_fail(RUGA_BAD_INPUT,
                          "%s: the surface is not flat at rest: its curves are written as .fold", path);
     }
@@ -90,7 +86,7 @@ static ruga_status write_curves(const char* path, const ruga_mesh* mesh, double 
     if (!pattern.folded) {
         RUGA_TRY_DONE(ruga_crease_pattern_add_boundary(&pattern, mesh));
     }
-    if (ends_with(path, ".svg")) {
+    if (ruga_file_name_ends(path, ".svg")) {
         RUGA_TRY_DONE(ruga_svg_write(path, &pattern, unit));
         goto done;
     }

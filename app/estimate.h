@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// What a run will cost, before it: from the sizes of a model alone.
+// What a run will cost, before it: from the sizes of a model alone, and in dynamic motion from its longest
+// stable step.
 #ifndef RUGA_APP_ESTIMATE_H
 #define RUGA_APP_ESTIMATE_H
 
@@ -14,6 +15,7 @@ typedef struct ruga_estimate {
     double seconds_per_frame; // one thread of a 2020s machine; within a factor of about three
 } ruga_estimate;
 
-ruga_estimate ruga_estimate_model(const ruga_model* model);
+// Fails where no state can be made of the model.
+ruga_status ruga_estimate_model(const ruga_model* model, ruga_estimate* estimate);
 
 #endif

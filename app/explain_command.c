@@ -32,11 +32,28 @@ typedef struct facts {
     double strain, amplitude; // NaN where there is no interior or no strain is known
     double edges;             // per wavelength; NaN where no wrinkles are solved for
     bool refused;
+    char judged[2][512]; // the mesh, the handles: what is to be said of them, or ""
 } facts;
+
+static void judge(facts* f) {
+    double good = 1e3 * f->model->edges_wavelength / edges_good;
+    if (f->refused) {
+        (void)snprintf(
+            f->judged[0], sizeof f->judged[0],
+            "%.3g edges per wavelength are below %g, run will refuse this: remesh with edge %.3g mm, or "
+            "set solver.allow_coarse",
+            f->edges, edges_least, good);
+    } else if (f->edges < edges_good) {
+        (void)snprintf(f->judged[0], sizeof f->judged[0],
+                       "%.3g edges per wavelength are below %g: remesh with edge %.3g mm", f->edges,
+                       edges_good, good);
+    }
+    ruga_judge_handles(f->model, f->judged[1], sizeof f->judged[1]);
+}
 
 static ruga_status derive(const ruga_arguments* arguments, facts* f) {
     const ruga_model_def* def = &f->scene->def;
-    f->estimate = ruga_estimate_model(f->model);
+    RUGA_TRY(ruga_estimate_model(f->model, &f->estimate));
     f->strain = f->amplitude = f->edges = NAN;
     if (!def->has_interior) {
         return RUGA_OK;
@@ -47,11 +64,10 @@ static ruga_status derive(const ruga_arguments* arguments, facts* f) {
         f->strain = f->model->follow.compression;
     }
     RUGA_TRY(ruga_quantity(arguments, "--strain", "1", &f->strain));
-    if (f->strain < 0 || f->strain >= 1) {
-        return ruga_fail(RUGA_BAD_INPUT, "the strain %g is not a compression between 0 and 100 %%",
-                         f->strain);
+    if (ruga_given(arguments, "--strain") && !(f->strain >= 0 && f->strain < 1)) {
+        return ruga_fail(RUGA_BAD_INPUT, "--strain: %g is not a compression between 0 and 100 %%", f->strain);
     }
-    if (isfinite(f->strain)) {
+    if (f->strain < 1) { // a matrix may flatten all
         f->amplitude = ruga_wrinkle_amplitude(&f->model->skin, &def->interior, f->strain);
     }
     if (f->model->solves_skin) {
@@ -117,7 +133,7 @@ static void say_sizes(const ruga_arguments* arguments, const facts* f) {
     ruga_say(arguments, "    %-28s %lld of the skin, %lld of the interior, %lld constraints\n",
              "degrees of freedom", (long long)e->skin_unknowns, (long long)e->interior_unknowns,
              (long long)e->constraints);
-    ruga_say(arguments, "    %-28s about %.2g MB\n", "memory", e->bytes / 1e6);
+    ruga_say(arguments, "    %-28s about %.3g MB\n", "memory", e->bytes / 1e6);
     ruga_say(arguments, "    %-28s roughly %s a frame, %s for %d frames\n", "time", frame, run, m->frames);
 }
 
@@ -192,6 +208,11 @@ static json_t* facts_json(const facts* f) {
     json_t* unknowns = json_pack("{s:I, s:I, s:I}", "skin", (json_int_t)e->skin_unknowns, "interior",
                                  (json_int_t)e->interior_unknowns, "constraints", (json_int_t)e->constraints);
     json_t* warnings = ruga_json_texts(f->scene->warning_count, (const char* const*)f->scene->warning);
+    for (int i = 0; i < 2; i++) {
+        if (*f->judged[i]) {
+            (void)json_array_append_new(warnings, json_string(f->judged[i]));
+        }
+    }
     json_t* wavelength = m->has_interior ? ruga_json_number(m->wavelength) : json_null();
     json_t* critical = m->has_interior ? ruga_json_number(m->critical_strain) : json_null();
     json_t* range =
@@ -216,22 +237,6 @@ static json_t* facts_json(const facts* f) {
 
 // ---- the command ---------------------------------------------------------------------------------------
 
-static ruga_status judge_edges(const ruga_arguments* arguments, const facts* f) {
-    double good = 1e3 * f->model->edges_wavelength / edges_good;
-    if (f->refused) {
-        return ruga_fail(
-            RUGA_BAD_INPUT,
-            "%s: %.2g edges per wavelength are below %g, run will refuse this: remesh with edge %.3g mm, "
-            "or set solver.allow_coarse",
-            ruga_operand(arguments), f->edges, edges_least, good);
-    }
-    if (f->edges < edges_good) {
-        ruga_warn(arguments, "%.2g edges per wavelength are below %g: remesh with edge %.3g mm", f->edges,
-                  edges_good, good);
-    }
-    return RUGA_OK;
-}
-
 static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     (void)exit_status;
     ruga_status status = RUGA_OK;
@@ -245,17 +250,24 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     // A mesh that is too coarse to be run is explained all the same.
     ruga_model_def def = scene.def;
     def.solver.allow_coarse = true;
-    RUGA_TRY_DONE(ruga_model_create(&def, &model));
+    RUGA_TRY_DONE(ruga_scene_place_error(&scene, ruga_model_create(&def, &model)));
     facts f = {.scene = &scene, .model = model};
     RUGA_TRY_DONE(derive(arguments, &f));
+    judge(&f);
     if (ruga_given(arguments, "--json")) {
         RUGA_TRY_DONE(ruga_print_json(facts_json(&f)));
     } else {
         say_all(arguments, &f);
     }
-    ruga_warn_of_handles(arguments, f.model);
     ruga_warn_of_creases(arguments, f.model);
-    status = judge_edges(arguments, &f);
+    for (int i = 0; i < 2; i++) {
+        if (*f.judged[i] && !(f.refused && i == 0)) {
+            ruga_warn(arguments, "%s", f.judged[i]);
+        }
+    }
+    if (f.refused) {
+        status = ruga_fail(RUGA_BAD_INPUT, "%s: %s", ruga_operand(arguments), f.judged[0]);
+    }
 done:
     ruga_model_destroy(&model);
     ruga_scene_clear(&scene);

@@ -163,12 +163,6 @@ static ruga_status read_frame(void* context, int frame, double* position, double
     } else {
         memcpy(position, j->coarse, n * sizeof *position);
     }
-    for (size_t i = 0; i < n; i++) {
-        if (!isfinite(position[i])) {
-            return ruga_fail(RUGA_BAD_INPUT, "%s: frame %d: vertex %zu has a coordinate that is not a number",
-                             ruga_operand(j->arguments), frame, i / 3);
-        }
-    }
     if (normal) {
         ruga_mesh_vertex_normals(&j->mesh, position, normal);
     }
@@ -219,9 +213,10 @@ static ruga_status prepare(job* j) {
 static ruga_status write_frame(job* j, int frame) {
     char* path = NULL;
     RUGA_TRY(read_frame(j, frame, j->mesh.position, j->normal));
-    (void)snprintf(j->comment, sizeof j->comment, "Ruga, %.64s, frame %d, t = %.9g s, unit %.9g m, %c up",
-                   j->name, frame, j->time[frame - j->range.first], j->animation.unit,
-                   j->animation.up == 1 ? 'y' : 'z');
+    (void)snprintf(j->comment, sizeof j->comment,
+                   "Ruga, %.64s, frame %d, t = %.9g s, unit %.9g m, %c up, %.9g frames per second", j->name,
+                   frame, j->time[frame - j->range.first], j->animation.unit,
+                   j->animation.up == 1 ? 'y' : 'z', j->animation.rate);
     RUGA_TRY(ruga_frame_path(j->pattern, frame, &path));
     ruga_status status = j->format == PLY ? ruga_ply_write(path, &j->mesh, j->normal, j->comment)
                                           : ruga_obj_write(path, &j->mesh, j->normal, j->comment);

@@ -4,9 +4,9 @@
 
 #include "app/console.h"
 #include "core/memory.h"
+#include "io/file_name.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,32 +64,19 @@ ruga_status ruga_choose_frames(const ruga_arguments* arguments, int frame_count,
     return RUGA_OK;
 }
 
-// The first %d, %4d or %04d at or after `path`, with its length; NULL where there is none.
-static const char* find_place(const char* path, size_t* length) {
-    for (const char* at = strchr(path, '%'); at; at = strchr(at + 1, '%')) {
-        size_t digits = strspn(at + 1, "0123456789");
-        if (at[1 + digits] == 'd') {
-            *length = digits + 2;
-            return at;
-        }
-    }
-    return NULL;
-}
-
 bool ruga_has_pattern(const char* path) {
     size_t length;
-    return find_place(path, &length) != NULL;
+    return ruga_file_name_place(path, &length) != NULL;
 }
 
 ruga_status ruga_check_pattern(const char* path, const ruga_frame_range* range) {
     size_t length, other;
-    const char* place = find_place(path, &length);
+    const char* place = ruga_file_name_place(path, &length);
     if (!place && range->last > range->first) {
-        return ruga_fail(
-            RUGA_BAD_INPUT,
-            "%s: several frames need a place for their number in the name, such as frame_%%04d.obj", path);
+        return ruga_fail(RUGA_BAD_INPUT,
+                         "%s: several frames need a place for their number in the name, such as %%04d", path);
     }
-    if (place && find_place(place + length, &other)) {
+    if (place && ruga_file_name_place(place + length, &other)) {
         return ruga_fail(RUGA_BAD_INPUT, "%s: the name has more than one place for the frame's number", path);
     }
     if (place && strtol(place + 1, NULL, 10) > NUMBER_WIDTH_MAX) {
@@ -99,25 +86,9 @@ ruga_status ruga_check_pattern(const char* path, const ruga_frame_range* range) 
     return RUGA_OK;
 }
 
-ruga_status ruga_open_frames(const ruga_arguments* arguments, const char* pattern,
-                             ruga_result_reader** reader, ruga_frame_range* range) {
-    RUGA_TRY(ruga_check_output(pattern));
-    RUGA_TRY(ruga_open_result(ruga_operand(arguments), reader));
-    RUGA_TRY(
-        ruga_choose_frames(arguments, ruga_result_frame_count(*reader), ruga_has_pattern(pattern), range));
-    return ruga_check_pattern(pattern, range);
-}
-
 ruga_status ruga_frame_path(const char* pattern, int frame, char** path) {
-    size_t length = 0, size = strlen(pattern) + NUMBER_WIDTH_MAX + 16;
-    const char* place = find_place(pattern, &length);
+    size_t size = strlen(pattern) + NUMBER_WIDTH_MAX + 16;
     RUGA_TRY(RUGA_NEW(*path, size));
-    if (!place) {
-        (void)snprintf(*path, size, "%s", pattern);
-        return RUGA_OK;
-    }
-    int width = (int)strtol(place + 1, NULL, 10);
-    (void)snprintf(*path, size, place[1] == '0' ? "%.*s%0*d%s" : "%.*s%*d%s", (int)(place - pattern), pattern,
-                   width, frame, place + length);
+    ruga_file_name_number(pattern, frame, *path, size);
     return RUGA_OK;
 }

@@ -20,12 +20,6 @@ ruga_status ruga_open_result(const char* path, ruga_result_reader** reader);
 ruga_status ruga_choose_frames(const ruga_arguments* arguments, int frame_count, bool all,
                                ruga_frame_range* range);
 
-// Opens the result of a command that writes a file for each of its frames, and chooses them: all where the
-// pattern has a place for the number, otherwise the last. The reader is the caller's to close, on failure as
-// well.
-ruga_status ruga_open_frames(const ruga_arguments* arguments, const char* pattern,
-                             ruga_result_reader** reader, ruga_frame_range* range);
-
 // Whether a file name holds a place for the frame's number: %d, %4d or %04d.
 bool ruga_has_pattern(const char* path);
 // RUGA_BAD_INPUT where a name has several places, or none for several frames.

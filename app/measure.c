@@ -10,6 +10,7 @@
 #include "core/vec3.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 enum { STRIPS = 24, SAMPLES = 1024, BINS = 400 };
@@ -243,8 +244,7 @@ static double dirichlet_energy(const ruga_measure* m) {
     for (int f = 0; f < m->mesh->triangle_count; f++) {
         const int* t = m->mesh->triangle + 3 * (size_t)f;
         double n[3], g[3] = {0, 0, 0}, edge[3];
-        ruga_triangle_normal(m->mesh->position + 3 * (size_t)t[0], m->mesh->position + 3 * (size_t)t[1],
-                             m->mesh->position + 3 * (size_t)t[2], n);
+        ruga_mesh_triangle_normal(m->mesh, f, n);
         // |grad w| = |sum_i w_i e_i| / (2 A), e_i the edge opposite corner i.
         for (int i = 0; i < 3; i++) {
             ruga_subtract(m->mesh->position + 3 * (size_t)t[(i + 2) % 3],
@@ -254,6 +254,18 @@ static double dirichlet_energy(const ruga_measure* m) {
         sum += 0.5 * ruga_dot(g, g) / fmax(ruga_norm(n), 1e-300);
     }
     return sum;
+}
+
+double ruga_measure_volume(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                           const double* position) {
+    for (int e = 0; e < connectivity->edge_count; e++) {
+        if (connectivity->edge_triangle[e][0] < 0 || connectivity->edge_triangle[e][1] < 0) {
+            return NAN;
+        }
+    }
+    ruga_mesh deformed = *mesh;
+    deformed.position = (double*)(uintptr_t)position;
+    return ruga_mesh_volume(&deformed);
 }
 
 ruga_status ruga_measure_frame(ruga_measure* m, const double* position, const double* embedded,
@@ -277,11 +289,7 @@ ruga_status ruga_measure_frame(ruga_measure* m, const double* position, const do
     if (m->flat) {
         RUGA_TRY(strip_wavelength(m, &measured->wavelength_fft));
     }
-    ruga_mesh deformed = *m->mesh;
-    double* copy = m->normal; // no longer needed
-    memcpy(copy, position, 3 * (size_t)m->mesh->vertex_count * sizeof *copy);
-    deformed.position = copy;
-    measured->volume = ruga_mesh_volume(&deformed);
+    measured->volume = ruga_measure_volume(m->mesh, &m->connectivity, position);
     return RUGA_OK;
 }
 

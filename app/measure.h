@@ -23,12 +23,16 @@ typedef struct ruga_measured {
     double wavelength;     // 2 pi sqrt(int w^2 / int |grad w|^2), m; 0 where w vanishes
     double wavelength_fft; // flat sheets only, otherwise 0, m
     double amplitude;      // sqrt(2) rms of w, m
-    double volume;         // of the deformed mesh, m^3
+    double volume;         // of the deformed mesh, m^3; NaN of an open one
 } ruga_measured;
 
 // position and embedded [V][3].
 ruga_status ruga_measure_frame(ruga_measure* measure, const double* position, const double* embedded,
                                ruga_measured* measured);
+
+// As above; `position` [V][3].
+double ruga_measure_volume(const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                           const double* position);
 
 // w [V] of the last frame measured: normal displacement less its low-pass part, m.
 const double* ruga_measure_displacement(const ruga_measure* measure);

@@ -10,6 +10,8 @@
 #include "app/frames.h"
 #include "app/meter.h"
 
+#include <math.h>
+
 static const ruga_option options[] = {
     {"--frame", "-f", "K", "the frame, counted from 0 [the last]", false},
     {"--json", "-j", NULL, "print one JSON object in SI units", false},
@@ -35,7 +37,11 @@ static void say_measurement(const ruga_arguments* arguments, const ruga_measurem
     }
     say_length(arguments, "wavelength predicted", m->predicted);
     say_length(arguments, "amplitude", m->values.amplitude);
-    ruga_say(arguments, "%-22s%.6g m^3\n", "volume", m->values.volume);
+    if (isfinite(m->values.volume)) {
+        ruga_say(arguments, "%-22s%.6g m^3\n", "volume", m->values.volume);
+    } else {
+        ruga_say(arguments, "%-22s-\n", "volume");
+    }
     ruga_say(arguments, "%-22s%s\n", "outcome", ruga_outcome_name(r->outcome));
     ruga_say(arguments, "%-22s%.2g (skin), %.2g (coupled), %.2g (constraints)\n", "residuals",
              r->residual_shell, r->residual_coupled, r->constraint_residual);

@@ -78,6 +78,7 @@ ruga_status ruga_measurement_take(ruga_result_reader* reader, int frame, ruga_me
     const ruga_mesh* mesh = ruga_result_mesh(reader);
     double *position = NULL, *embedded = NULL;
     ruga_measure* measure = NULL;
+    ruga_connectivity connectivity = {0};
     m->tied = ruga_result_has_interior(reader);
     m->predicted = header->wavelength;
     RUGA_TRY_DONE(RUGA_NEW(position, 3 * (size_t)mesh->vertex_count));
@@ -89,9 +90,8 @@ ruga_status ruga_measurement_take(ruga_result_reader* reader, int frame, ruga_me
                                                 header->seed, &measure));
         RUGA_TRY_DONE(ruga_measure_frame(measure, position, embedded, &m->values));
     } else {
-        ruga_mesh deformed = *mesh;
-        deformed.position = position;
-        m->values.volume = ruga_mesh_volume(&deformed);
+        RUGA_TRY_DONE(ruga_connectivity_create(mesh, &connectivity));
+        m->values.volume = ruga_measure_volume(mesh, &connectivity, position);
     }
     if (header->creases) {
         RUGA_TRY_DONE(take_creases(reader, m));
@@ -102,6 +102,7 @@ done:
         ruga_measurement_clear(m);
     }
     ruga_measure_destroy(&measure);
+    ruga_connectivity_clear(&connectivity);
     ruga_release(position);
     ruga_release(embedded);
     return status;

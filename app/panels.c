@@ -19,7 +19,7 @@ const ruga_panel_kind ruga_panel_kinds[] = {
     {"seconds", "where the time of a frame went"},
     {"wavelength", "of the wrinkles, with the one predicted"},
     {"amplitude", "of the wrinkles"},
-    {"angle", "fold angles of the creases, valleys and mountains, with their range"},
+    {"angle", "fold angles of the creases, with their range along each"},
     {"force", "that holds each handle"},
     {NULL, NULL},
 };
@@ -192,18 +192,18 @@ static ruga_status read_wrinkles(job* j, bool amplitude) {
 
 // ---- creases and handles -------------------------------------------------------------------------------
 
-// Mean and range over the segments that end up as valleys, or as mountains.
-static ruga_status add_folds(job* j, bool valley, const double* last, double* angle) {
-    int segments = ruga_result_reader_header(j->reader)->creases->segment_count;
-    int frames = j->panels->frame_count, count = 0;
-    double* mean;
-    for (int s = 0; s < segments; s++) {
-        count += (last[s] >= 0) == valley;
+// Mean by length and range over the segments of one group, deg.
+static ruga_status add_group(job* j, const char* name, const int* group, int which, double* angle) {
+    const ruga_result_creases* creases = ruga_result_reader_header(j->reader)->creases;
+    int frames = j->panels->frame_count;
+    double *mean, length = 0;
+    for (int s = 0; s < creases->segment_count; s++) {
+        length += group[s] == which ? creases->length[s] : 0;
     }
-    if (count == 0) {
+    if (!(length > 0)) { // a cut, or no valley at all
         return RUGA_OK;
     }
-    RUGA_TRY(add_series(j, valley ? "valleys" : "mountains", &mean));
+    RUGA_TRY(add_series(j, name, &mean));
     ruga_panel_series* out = &j->panel->series[j->panel->series_count - 1];
     RUGA_TRY(RUGA_NEW(out->low, frames));
     RUGA_TRY(RUGA_NEW(out->high, frames));
@@ -211,10 +211,10 @@ static ruga_status add_folds(job* j, bool valley, const double* last, double* an
         RUGA_TRY(ruga_result_read_creases(j->reader, frame, angle, NULL, NULL));
         out->low[frame] = INFINITY;
         out->high[frame] = -INFINITY;
-        for (int s = 0; s < segments; s++) {
-            if ((last[s] >= 0) == valley) {
+        for (int s = 0; s < creases->segment_count; s++) {
+            if (group[s] == which) {
                 double degrees = angle[s] * 180 / RUGA_PI;
-                mean[frame] += degrees / count;
+                mean[frame] += creases->length[s] / length * degrees;
                 out->low[frame] = fmin(out->low[frame], degrees);
                 out->high[frame] = fmax(out->high[frame], degrees);
             }
@@ -223,20 +223,29 @@ static ruga_status add_folds(job* j, bool valley, const double* last, double* an
     return RUGA_OK;
 }
 
+// A curve for each crease while they can be told apart, otherwise one for all valleys and one for all
+// mountains, as the segments end up.
 static ruga_status read_angles(job* j) {
     const ruga_result_creases* creases = ruga_result_reader_header(j->reader)->creases;
-    double *last = NULL, *angle = NULL;
+    const char* const kinds[2] = {"valleys", "mountains"};
+    double* angle = NULL;
+    int* group = NULL;
     ruga_status status = RUGA_OK;
     if (!creases) {
         return RUGA_OK;
     }
-    RUGA_TRY_DONE(RUGA_NEW(last, creases->segment_count));
+    bool each = creases->crease_count <= RUGA_PANEL_SERIES;
+    RUGA_TRY_DONE(RUGA_NEW(group, creases->segment_count));
     RUGA_TRY_DONE(RUGA_NEW(angle, creases->segment_count));
-    RUGA_TRY_DONE(ruga_result_read_creases(j->reader, j->panels->frame_count - 1, last, NULL, NULL));
-    RUGA_TRY_DONE(add_folds(j, true, last, angle));
-    RUGA_TRY_DONE(add_folds(j, false, last, angle));
+    RUGA_TRY_DONE(ruga_result_read_creases(j->reader, j->panels->frame_count - 1, angle, NULL, NULL));
+    for (int s = 0; s < creases->segment_count; s++) {
+        group[s] = each ? creases->crease[s] : angle[s] < 0;
+    }
+    for (int k = 0; k < (each ? creases->crease_count : 2); k++) {
+        RUGA_TRY_DONE(add_group(j, each ? creases->name[k] : kinds[k], group, k, angle));
+    }
 done:
-    ruga_release(last);
+    ruga_release(group);
     ruga_release(angle);
     return status;
 }
@@ -253,7 +262,7 @@ static ruga_status read_forces(job* j) {
     }
     for (int frame = 0; frame < j->panels->frame_count && shown > 0 && status == RUGA_OK; frame++) {
         status = ruga_result_read_handle_force(j->reader, frame, force);
-        for (int h = 0; h < shown; h++) {
+        for (int h = 0; h < shown && status == RUGA_OK; h++) {
             y[h][frame] = ruga_norm(force + 3 * (size_t)h);
         }
     }

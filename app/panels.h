@@ -7,7 +7,7 @@
 
 #include "io/result.h"
 
-enum { RUGA_PANEL_SERIES = 8, RUGA_PANELS_MAX = 12 };
+enum { RUGA_PANEL_SERIES = 12, RUGA_PANELS_MAX = 12 };
 
 typedef struct ruga_panel_series {
     char name[40];

@@ -13,6 +13,7 @@
 #include "view/render.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { PIXELS_MIN = 16, PIXELS_MAX = 16384, PICTURES_MAX = 100000 };
 
@@ -60,6 +61,13 @@ static ruga_status read_size(job* j) {
     return ruga_integer(j->arguments, "--height", PIXELS_MIN, PIXELS_MAX, &j->def.height);
 }
 
+static ruga_status check_name(const char* path) {
+    const char* dot = strrchr(path, '.');
+    return dot && strcmp(dot, ".png") == 0
+               ? ruga_check_output(path)
+               : ruga_fail(RUGA_BAD_INPUT, "%s: pictures are written as .png; end the name in it", path);
+}
+
 // What can be refused before the result is read.
 static ruga_status read_options(job* j) {
     const ruga_arguments* a = j->arguments;
@@ -70,7 +78,7 @@ static ruga_status read_options(job* j) {
         RUGA_TRY(ruga_required(a, "--output", &j->pattern));
     }
     if (j->pattern) {
-        RUGA_TRY(ruga_check_output(j->pattern));
+        RUGA_TRY(check_name(j->pattern));
     }
     if (j->film) {
         RUGA_TRY(ruga_check_output(j->film));

@@ -44,6 +44,8 @@ typedef struct job {
     ruga_state* state;
     ruga_result* result;
     double *restart, *force, *gap;
+    ruga_mesh shown;                                 // the model's, with `source`
+    int* source;                                     // [V]
     double *thickness, *young, *growth, *wavelength; // of the mesh shown, or NULL
     ruga_crease_table creases;
     ruga_meter meter;
@@ -140,9 +142,17 @@ static void warn_of_coarse_mesh(const job* j) {
     if (j->model->has_interior && j->model->solves_skin && edges < 8) {
         ruga_warn(
             j->arguments,
-            "the mesh has %.2g edges per wrinkle wavelength (%.3g mm); below 8 wrinkles come out too long or "
+            "the mesh has %.3g edges per wrinkle wavelength (%.3g mm); below 8 wrinkles come out too long or "
             "not at all: remesh with edge %.3g mm",
             edges, 1e3 * wavelength, 1e3 * wavelength / 8);
+    }
+}
+
+static void warn_of_handles(const job* j) {
+    char sentence[512];
+    ruga_judge_handles(j->model, sentence, sizeof sentence);
+    if (*sentence) {
+        ruga_warn(j->arguments, "%s", sentence);
     }
 }
 
@@ -157,15 +167,33 @@ static void warn_of_loose_fit(const job* j) {
     }
 }
 
+// The mesh as it is shown, its vertices named by those of the user's file: the model knows those of the
+// scene's mesh only.
+static ruga_status name_sources(job* j) {
+    const int* of_scene = j->scene.mesh.source_vertex;
+    j->shown = *ruga_model_shown(j->model);
+    RUGA_TRY(RUGA_NEW(j->source, j->shown.vertex_count));
+    for (int v = 0; v < j->shown.vertex_count; v++) {
+        int source = j->shown.source_vertex ? j->shown.source_vertex[v] : v;
+        j->source[v] = of_scene && source >= 0 ? of_scene[source] : source;
+    }
+    j->shown.source_vertex = j->source;
+    return RUGA_OK;
+}
+
 static ruga_status open_result(job* j) {
     const ruga_model* model = j->model;
+    char libraries[1024];
+    ruga_library_versions(", ", libraries, sizeof libraries);
+    RUGA_TRY(name_sources(j));
     const ruga_variation* v = &model->variation;
     RUGA_TRY(ruga_variation_show(model, v->thickness, 1, &j->thickness));
     RUGA_TRY(ruga_variation_show(model, v->young, 1, &j->young));
     RUGA_TRY(ruga_variation_show(model, v->growth, 2, &j->growth));
     RUGA_TRY(ruga_variation_show(model, v->wavelength, 1, &j->wavelength));
     ruga_result_header header = {
-        .mesh = ruga_model_shown(model),
+        .libraries = libraries,
+        .mesh = &j->shown,
         .lattice = model->has_interior ? &model->lattice : NULL,
         .scene_text = j->scene.text,
         .scene_hash = j->scene.hash,
@@ -221,7 +249,7 @@ static ruga_status write_frame(job* j, const ruga_report* report) {
     count_outcome(j, report->outcome);
     ruga_meter_frame(&j->meter, frame.time, report);
     // A picture that cannot be written is no reason to end a long run.
-    if (ruga_preview_frame(&j->preview, &j->scene.mesh, j->whole, frame.position) != RUGA_OK) {
+    if (ruga_preview_frame(&j->preview, &j->shown, j->whole, frame.position) != RUGA_OK) {
         ruga_meter_erase(&j->meter);
         ruga_warn(j->arguments, "no more previews: %s", ruga_last_error());
         ruga_preview_clear(&j->preview);
@@ -232,10 +260,10 @@ static ruga_status write_frame(job* j, const ruga_report* report) {
 static ruga_status simulate(job* j) {
     ruga_report report;
     int frames = j->scene.def.frames;
-    RUGA_TRY(ruga_model_create(&j->scene.def, &j->model));
+    RUGA_TRY(ruga_scene_place_error(&j->scene, ruga_model_create(&j->scene.def, &j->model)));
     warn_of_coarse_mesh(j);
     warn_of_loose_fit(j);
-    ruga_warn_of_handles(j->arguments, j->model);
+    warn_of_handles(j);
     ruga_warn_of_creases(j->arguments, j->model);
     RUGA_TRY(ruga_state_create(j->model, &j->state));
     RUGA_TRY(open_result(j));
@@ -337,6 +365,7 @@ static ruga_status finish(job* j, ruga_status status, int* exit_status) {
 
 static void clear(job* j) {
     ruga_preview_clear(&j->preview);
+    ruga_release(j->source);
     ruga_release(j->restart);
     ruga_release(j->force);
     ruga_release(j->gap);

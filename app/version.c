@@ -18,24 +18,26 @@
 #include <stdio.h>
 #include <string.h>
 
-void ruga_print_version(void) {
+void ruga_library_versions(const char* between, char* text, size_t size) {
+    const char* b = between;
     // " OpenBLAS 0.3.21 "
     const char* blas = strpbrk(OPENBLAS_VERSION, "0123456789");
-    (void)printf("ruga %s\n", ruga_version());
-    (void)printf("SuiteSparse %d.%d.%d (CHOLMOD %d.%d.%d)\n", SUITESPARSE_MAIN_VERSION,
-                 SUITESPARSE_SUB_VERSION, SUITESPARSE_SUBSUB_VERSION, CHOLMOD_MAIN_VERSION,
-                 CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION);
-    (void)printf("Trilinos %s (Belos)\n", RUGA_TRILINOS_VERSION);
-    (void)printf("OpenVDB %s\n", RUGA_OPENVDB_VERSION);
-    (void)printf("CGAL %s\n", RUGA_CGAL_VERSION);
-    (void)printf("HDF5 %d.%d.%d\n", H5_VERS_MAJOR, H5_VERS_MINOR, H5_VERS_RELEASE);
-    (void)printf("METIS %d.%d.%d\n", METIS_VER_MAJOR, METIS_VER_MINOR, METIS_VER_SUBMINOR);
-    (void)printf("OpenBLAS %.*s\n", (int)strcspn(blas ? blas : "", " "), blas ? blas : "");
-    (void)printf("ARPACK-NG, UDUNITS-2\n");
-    (void)printf("Embree %s\n", RUGA_EMBREE_VERSION);
-    (void)printf("OpenEXR %s\n", RUGA_OPENEXR_VERSION);
-    (void)printf("libyaml %s\n", yaml_get_version_string());
-    (void)printf("jansson %s\n", JANSSON_VERSION);
-    (void)printf("libpng %s\n", PNG_LIBPNG_VER_STRING);
-    (void)printf("cairo %s\n", CAIRO_VERSION_STRING);
+    (void)snprintf(
+        text, size,
+        "SuiteSparse %d.%d.%d (CHOLMOD %d.%d.%d)%sTrilinos %s (Belos)%sOpenVDB %s%sCGAL %s%sMETIS %d.%d.%d%s"
+        "OpenBLAS %.*s%sARPACK-NG, UDUNITS-2%sEmbree %s%sOpenEXR %s%slibyaml %s%sjansson %s%slibpng %s%s"
+        "cairo %s",
+        SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION, SUITESPARSE_SUBSUB_VERSION, CHOLMOD_MAIN_VERSION,
+        CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION, b, RUGA_TRILINOS_VERSION, b, RUGA_OPENVDB_VERSION, b,
+        RUGA_CGAL_VERSION, b, METIS_VER_MAJOR, METIS_VER_MINOR, METIS_VER_SUBMINOR, b,
+        (int)strcspn(blas ? blas : "", " "), blas ? blas : "", b, b, RUGA_EMBREE_VERSION, b,
+        RUGA_OPENEXR_VERSION, b, yaml_get_version_string(), b, JANSSON_VERSION, b, PNG_LIBPNG_VER_STRING, b,
+        CAIRO_VERSION_STRING);
+}
+
+void ruga_print_version(void) {
+    char libraries[1024];
+    ruga_library_versions("\n", libraries, sizeof libraries);
+    (void)printf("ruga %s\nHDF5 %d.%d.%d\n%s\n", ruga_version(), H5_VERS_MAJOR, H5_VERS_MINOR,
+                 H5_VERS_RELEASE, libraries);
 }

@@ -37,8 +37,8 @@
 
 static const double INDEPENDENCE = 1e-4;
 
-// Sample points of an element's material: its quadrature points, and where the cell is full also the points of
-// {0, 1/2, 1}^3, so that a thin region on the material's outer face holds all of the face.
+// Sample points of an element's material: its quadrature points, and where the cell is full also the points
+// of {0, 1/2, 1}^3, so that a thin region on the material's outer face holds all of the face.
 enum { GRID_POINTS = 27, ELEMENT_POINTS = RUGA_LATTICE_POINTS + GRID_POINTS };
 
 // A row kept for one component.
@@ -143,7 +143,7 @@ static ruga_status claim_region(builder* b, int handle) {
     int count;
     ruga_status status = ruga_region_vertices(region, b->mesh, &count, b->selected);
     if (status != RUGA_OK) {
-        return ruga_fail_prefix(status, "handles[%d]", handle);
+        return ruga_fail_prefix(status, "handles.%d", handle);
     }
     for (int k = 0; k < count; k++) {
         if (lattice->vertex_element[b->selected[k]] >= 0) {
@@ -155,7 +155,8 @@ static ruga_status claim_region(builder* b, int handle) {
         for (int e = 0; e < lattice->element_count; e++) {
             bool full = is_full(lattice, e);
             for (int g = 0; g < ELEMENT_POINTS; g++) {
-                bool material = g < RUGA_LATTICE_POINTS ? lattice->volume[RUGA_LATTICE_POINTS * e + g] > 0 : full;
+                bool material =
+                    g < RUGA_LATTICE_POINTS ? lattice->volume[RUGA_LATTICE_POINTS * e + g] > 0 : full;
                 double x[3], xi[3];
                 sample_point(lattice, e, g, xi, x);
                 if (material && ruga_region_contains_within(region, x, slack)) {
@@ -516,12 +517,14 @@ double ruga_rows_nearest(const ruga_rows* rows, const ruga_lattice* lattice, con
     for (int i = 0, first = 0; i < rows->count; i++) {
         first = rows->axis[i] == rows->axis[first] ? first : i;
         for (int j = first; j < i; j++) {
-            if (rows->handle[i] == rows->handle[j] || same_motion(&handles[rows->handle[i]], &handles[rows->handle[j]])) {
+            if (rows->handle[i] == rows->handle[j] ||
+                same_motion(&handles[rows->handle[i]], &handles[rows->handle[j]])) {
                 continue;
             }
             double far = 0;
             for (int k = 0; k < 3; k++) {
-                far = fmax(far, fabs(rows->point[3 * i + k] - rows->point[3 * j + k]) / lattice->cell_size[k]);
+                far =
+                    fmax(far, fabs(rows->point[3 * i + k] - rows->point[3 * j + k]) / lattice->cell_size[k]);
             }
             if (far < nearest) {
                 nearest = far;

@@ -17,7 +17,6 @@
 ruga_status ruga_region_vertices(const ruga_region* region, const ruga_mesh* mesh, int* count, int* selected);
 // Whether a rest position is in the region (to a slack in m). A group or a list of vertices contains no
 // positions, only vertices.
-bool ruga_region_contains(const ruga_region* region, const double x[3]);
 bool ruga_region_contains_within(const ruga_region* region, const double x[3], double slack);
 double ruga_region_slack(const ruga_mesh* mesh);
 // Index of the region's group.

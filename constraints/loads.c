@@ -50,12 +50,12 @@ void ruga_handle_target(const ruga_handle_def* handle, double time, const double
 typedef struct load {
     ruga_handle_def handle; // for its kind, pressure and ramp; its pointers are not used
     int triangle_count;
-    int (*triangle)[3]; // under pressure
+    int (*triangle)[3];           // under pressure
     ruga_load_place (*corner)[3]; // where its corners are; NULL = at vertices
     int vertex_count;
     int* vertex;            // under a dead load
     ruga_load_place* place; // where they are; NULL = at themselves
-    double (*force)[3]; // [vertex_count] N at full ramp
+    double (*force)[3];     // [vertex_count] N at full ramp
 } load;
 
 struct ruga_loads {
@@ -92,7 +92,7 @@ typedef struct selection {
     const ruga_mesh* mesh;
     const ruga_connectivity* connectivity;
     const ruga_load_place (*place)[3]; // [F] or NULL
-    int index; // of the handle, for sentences
+    int index;                         // of the handle, for sentences
     int count;
     int* list;     // [V]
     bool* in;      // [V]
@@ -189,7 +189,7 @@ static ruga_status add_line_force(const selection* s, load* out) {
 static ruga_status add_load(selection* s, load* out) {
     ruga_status status = ruga_region_vertices(&out->handle.region, s->mesh, &s->count, s->list);
     if (status != RUGA_OK) {
-        return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "handles[%d]", s->index) : status;
+        return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "handles.%d", s->index) : status;
     }
     memset(s->in, 0, (size_t)s->mesh->vertex_count * sizeof *s->in);
     for (int k = 0; k < s->count; k++) {
@@ -353,7 +353,8 @@ static void add_hessian(const sweep* s, double pressure, const int triangle[3], 
 }
 
 // One block, between the nodes a and b, of weight w; both orders where they are one node.
-static void add_block(int a, int b, double w, double block[3][3], const ruga_sparse* pattern, double* hessian) {
+static void add_block(int a, int b, double w, double block[3][3], const ruga_sparse* pattern,
+                      double* hessian) {
     for (int row = 0; row < 3; row++) {
         for (int column = 0; column < 3; column++) {
             int i = 3 * a + row, j = 3 * b + column;

@@ -35,27 +35,14 @@ bool ruga_region_contains_within(const ruga_region* region, const double x[3], d
     return false;
 }
 
-bool ruga_region_contains(const ruga_region* region, const double x[3]) {
-    return ruga_region_contains_within(region, x, 0);
-}
-
 double ruga_region_slack(const ruga_mesh* mesh) {
     double min[3], max[3];
     ruga_mesh_bounds(mesh, min, max);
     return 1e-9 * ruga_distance(min, max);
 }
 
-static int find_group(const ruga_mesh* mesh, const char* name) {
-    for (int g = 0; g < mesh->group_count; g++) {
-        if (name && strcmp(mesh->group_name[g], name) == 0) {
-            return g;
-        }
-    }
-    return -1;
-}
-
 ruga_status ruga_region_group(const ruga_region* region, const ruga_mesh* mesh, int* group) {
-    *group = find_group(mesh, region->group);
+    *group = ruga_mesh_find_group(mesh, region->group);
     if (*group >= 0) {
         return RUGA_OK;
     }
@@ -143,9 +130,8 @@ ruga_status ruga_region_empty(const ruga_region* region, const ruga_mesh* mesh, 
     static const char* const names[] = {"all", "box", "sphere", "plane", "group", "vertices"};
     double min[3], max[3];
     ruga_mesh_bounds(mesh, min, max);
-    return ruga_fail(
-        RUGA_BAD_INPUT,
-        "handles[%d]: the region (%s) selects no %s; the rest mesh lies between (%g, %g, %g) and "
-        "(%g, %g, %g) m",
-        handle, names[region->kind], what, min[0], min[1], min[2], max[0], max[1], max[2]);
+    return ruga_fail(RUGA_BAD_INPUT,
+                     "handles.%d: the region (%s) selects no %s; the rest mesh lies between (%g, %g, %g) and "
+                     "(%g, %g, %g) m",
+                     handle, names[region->kind], what, min[0], min[1], min[2], max[0], max[1], max[2]);
 }

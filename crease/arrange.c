@@ -77,7 +77,8 @@ static ruga_status weld_vertices(arranger* a) {
     ruga_sets_reset(parent, p->vertex_count);
     for (int i = 0; i < p->vertex_count; i++) {
         for (int j = i - 1; j >= 0 && sorted[i].x - sorted[j].x <= a->weld; j--) {
-            if (distance(p->position[sorted[i].index], p->position[sorted[j].index]) <= a->weld) {
+            const double *x = p->position[sorted[i].index], *y = p->position[sorted[j].index];
+            if (fabs(x[1] - y[1]) <= a->weld && distance(x, y) <= a->weld) {
                 ruga_sets_unite(parent, sorted[i].index, sorted[j].index);
             }
         }
@@ -175,6 +176,26 @@ done:
     return status;
 }
 
+// The box around a line.
+typedef struct reach {
+    double low[2], high[2];
+    int index;
+} reach;
+
+static reach reach_of(const ruga_crease_pattern* p, int edge, double slack) {
+    const double *s = p->position[p->edge[edge].vertex[0]], *t = p->position[p->edge[edge].vertex[1]];
+    return (reach){{fmin(s[0], t[0]) - slack, fmin(s[1], t[1]) - slack},
+                   {fmax(s[0], t[0]) + slack, fmax(s[1], t[1]) + slack},
+                   edge};
+}
+
+static int compare_reaches(const void* a, const void* b) {
+    const reach *p = a, *q = b;
+    return p->low[0] < q->low[0]   ? -1
+           : p->low[0] > q->low[0] ? 1
+                                   : (p->index > q->index) - (p->index < q->index);
+}
+
 static ruga_status add_cut(arranger* a, int edge, int vertex, double at) {
     RUGA_TRY(RUGA_RESERVE(a->cut, a->cut_capacity, (size_t)a->cut_count + 1));
     a->cut[a->cut_count++] = (cut){edge, vertex, at};
@@ -196,21 +217,21 @@ static ruga_status cut_at_vertices(arranger* a) {
     RUGA_TRY_DONE(sorted_vertices(p, &sorted));
     for (int e = 0; e < p->edge_count; e++) {
         const int* end = p->edge[e].vertex;
-        double low = fmin(p->position[end[0]][0], p->position[end[1]][0]) - a->weld;
-        double high = fmax(p->position[end[0]][0], p->position[end[1]][0]) + a->weld;
+        const reach r = reach_of(p, e, a->weld);
         int first = 0;
         for (int end_of = p->vertex_count; first < end_of;) {
             int middle = first + (end_of - first) / 2;
-            if (sorted[middle].x < low) {
+            if (sorted[middle].x < r.low[0]) {
                 first = middle + 1;
             } else {
                 end_of = middle;
             }
         }
-        for (int i = first; i < p->vertex_count && sorted[i].x <= high; i++) {
+        for (int i = first; i < p->vertex_count && sorted[i].x <= r.high[0]; i++) {
             int v = sorted[i].index;
-            double off = INFINITY,
-                   at = v == end[0] || v == end[1] ? 0 : along_edge(p, e, p->position[v], &off);
+            double y = p->position[v][1], off = INFINITY;
+            bool beside = v == end[0] || v == end[1] || y < r.low[1] || y > r.high[1];
+            double at = beside ? 0 : along_edge(p, e, p->position[v], &off);
             if (at > 0 && at < 1 && off <= a->weld) {
                 RUGA_TRY_DONE(add_cut(a, e, v, at));
                 a->touching++;
@@ -251,21 +272,20 @@ static ruga_status cut_pair(arranger* a, int e, int f) {
 
 static ruga_status cut_at_crossings(arranger* a) {
     ruga_crease_pattern* p = a->pattern;
-    place* sorted = NULL;
+    reach* sorted = NULL;
     ruga_status status = RUGA_OK;
     RUGA_TRY_DONE(RUGA_NEW(sorted, p->edge_count));
     for (int e = 0; e < p->edge_count; e++) {
-        const int* end = p->edge[e].vertex;
-        sorted[e] = (place){fmin(p->position[end[0]][0], p->position[end[1]][0]), e};
+        sorted[e] = reach_of(p, e, 0);
     }
     if (p->edge_count > 1) {
-        qsort(sorted, (size_t)p->edge_count, sizeof *sorted, compare_places);
+        qsort(sorted, (size_t)p->edge_count, sizeof *sorted, compare_reaches);
     }
     for (int i = 0; i < p->edge_count; i++) {
-        const int* end = p->edge[sorted[i].index].vertex;
-        double high = fmax(p->position[end[0]][0], p->position[end[1]][0]);
-        for (int j = i + 1; j < p->edge_count && sorted[j].x <= high; j++) {
-            RUGA_TRY_DONE(cut_pair(a, sorted[i].index, sorted[j].index));
+        for (int j = i + 1; j < p->edge_count && sorted[j].low[0] <= sorted[i].high[0]; j++) {
+            if (sorted[j].low[1] <= sorted[i].high[1] && sorted[j].high[1] >= sorted[i].low[1]) {
+                RUGA_TRY_DONE(cut_pair(a, sorted[i].index, sorted[j].index));
+            }
         }
     }
 done:

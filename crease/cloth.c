@@ -22,10 +22,9 @@
 
 #include "core/memory.h"
 #include "core/vec3.h"
-#include "crease/springs.h"
+#include "crease/pairs.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 void ruga_cloth_clear(ruga_cloth* cloth) {
@@ -35,14 +34,6 @@ void ruga_cloth_clear(ruga_cloth* cloth) {
 }
 
 // ------------------------------------------------------------------------------- the sheet's hinges
-
-static double triangle_area(const ruga_raster* r, int f) {
-    const int* t = r->mesh.triangle + 3 * (size_t)f;
-    double n[3];
-    ruga_triangle_normal(r->mesh.position + 3 * (size_t)t[0], r->mesh.position + 3 * (size_t)t[1],
-                         r->mesh.position + 3 * (size_t)t[2], n);
-    return 0.5 * ruga_norm(n);
-}
 
 void ruga_bends_make(const ruga_raster* raster, const ruga_cut* cut, ruga_hinge* hinge) {
     for (int b = 0; b < cut->bend_count; b++) {
@@ -65,15 +56,15 @@ void ruga_bend_stiffness(const ruga_raster* raster, const ruga_cut* cut, double*
         const int* ends = raster->edges.edge[cut->bend[b].edge];
         double length = ruga_distance(raster->mesh.position + 3 * (size_t)ends[0],
                                       raster->mesh.position + 3 * (size_t)ends[1]);
-        double area = triangle_area(raster, cut->piece[cut->bend[b].piece[0]].triangle) +
-                      triangle_area(raster, cut->piece[cut->bend[b].piece[1]].triangle);
+        double area = ruga_mesh_triangle_area(&raster->mesh, cut->piece[cut->bend[b].piece[0]].triangle) +
+                      ruga_mesh_triangle_area(&raster->mesh, cut->piece[cut->bend[b].piece[1]].triangle);
         bend[b] = cut->bend[b].fraction * length * length / area;
     }
     for (int s = 0; s < cut->segment_count; s++) {
         const ruga_cut_piece *a = &cut->piece[cut->segment[s].piece[0]],
                              *b = &cut->piece[cut->segment[s].piece[1]];
-        double area = a->fraction * triangle_area(raster, a->triangle) +
-                      b->fraction * triangle_area(raster, b->triangle);
+        double area = a->fraction * ruga_mesh_triangle_area(&raster->mesh, a->triangle) +
+                      b->fraction * ruga_mesh_triangle_area(&raster->mesh, b->triangle);
         double length = cut->segment[s].length;
         chord[s] = cut->segment[s].curve >= 0 ? 0 : length * length / area;
     }
@@ -171,7 +162,7 @@ ruga_status ruga_cloth_add_sheet(ruga_cloth* cloth, const ruga_raster* raster, c
     ruga_cut_rest(raster, cut, rest);
     for (int p = 0; p < cut->piece_count; p++) {
         const ruga_cut_piece* piece = &cut->piece[p];
-        double area = piece->fraction * triangle_area(raster, piece->triangle);
+        double area = piece->fraction * ruga_mesh_triangle_area(&raster->mesh, piece->triangle);
         for (int i = 0; i < 3; i++) {
             // Always from the lower node: equal for both pieces beside a side, to the last bit.
             int a = piece->node[i], b = piece->node[(i + 1) % 3], low = a < b ? a : b;
@@ -225,14 +216,6 @@ static double distance_to(const ruga_raster* raster, const ruga_cut* cut, int s,
     return ruga_norm(across) / ruga_norm(e);
 }
 
-static int compare_pairs(const void* a, const void* b) {
-    const ruga_pair *p = a, *q = b;
-    int by_curve = (p->curve > q->curve) - (p->curve < q->curve);
-    int first = (p->node[0] > q->node[0]) - (p->node[0] < q->node[0]);
-    int second = (p->node[1] > q->node[1]) - (p->node[1] < q->node[1]);
-    return by_curve ? by_curve : first ? first : second;
-}
-
 // Distance of each pair's vertex from its crease, and a segment beside it.
 static void measure_pairs(const ruga_raster* raster, const ruga_cut* cut, int count, const ruga_pair* pair,
                           double* distance, int* segment) {
@@ -240,53 +223,57 @@ static void measure_pairs(const ruga_raster* raster, const ruga_cut* cut, int co
         for (int i = 0; i < 3 && is_fold(cut, s) && is_doubled(cut, s); i++) {
             int a = cut->piece[cut->segment[s].piece[0]].node[i],
                 b = cut->piece[cut->segment[s].piece[1]].node[i];
-            const ruga_pair key = {{a < b ? a : b, a < b ? b : a}, cut->segment[s].curve};
-            const ruga_pair* at =
-                a == b ? NULL : bsearch(&key, pair, (size_t)count, sizeof *pair, compare_pairs);
-            if (at) {
+            int at = ruga_pairs_find(count, pair, a, b, cut->segment[s].curve);
+            if (at >= 0) {
                 const double* x = raster->mesh.position + 3 * (size_t)cut->source[a];
-                segment[at - pair] = s;
-                distance[at - pair] = distance_to(raster, cut, s, x);
+                segment[at] = s;
+                distance[at] = distance_to(raster, cut, s, x);
             }
         }
     }
 }
 
-// sum k_h l over sum d^2 of the crease whose pairs begin at `first`; *end is where they end.
-static double pair_stiffness(const ruga_cut* cut, const double* stiffness, int count, const ruga_pair* pair,
-                             const double* distance, int first, int* end) {
-    double wanted = 0, squares = 0;
-    for (*end = first; *end < count && pair[*end].curve == pair[first].curve; ++*end) {
-        squares += distance[*end] * distance[*end];
+// k [curves] = sum k_h l over sum d^2 of each crease; squares [curves] is work. Both are zero before.
+static void pair_stiffness(const ruga_raster* raster, const ruga_cut* cut, const double* stiffness, int count,
+                           const ruga_pair* pair, const double* distance, double* squares, double* k) {
+    for (int p = 0; p < count; p++) {
+        squares[pair[p].curve] += distance[p] * distance[p];
     }
     for (int s = 0; s < cut->segment_count; s++) {
-        bool own = cut->segment[s].curve == pair[first].curve && is_doubled(cut, s);
-        wanted += own ? stiffness[s] * cut->segment[s].length : 0;
+        if (is_fold(cut, s) && is_doubled(cut, s)) {
+            k[cut->segment[s].curve] += stiffness[s] * cut->segment[s].length;
+        }
     }
-    return squares > 0 ? wanted / squares : 0;
+    for (int c = 0; c < raster->curve_count; c++) {
+        k[c] = squares[c] > 0 ? k[c] / squares[c] : 0;
+    }
 }
 
 static ruga_status add_pairs(ruga_cloth* cloth, const ruga_raster* raster, const ruga_cut* cut,
                              const double* stiffness) {
     ruga_status status = RUGA_OK;
     ruga_pair* pair = NULL;
-    double *distance = NULL, k = 0;
+    double *distance = NULL, *squares = NULL, *k = NULL;
     int *segment = NULL, count = 0;
     const double weight[2] = {1, -1};
     RUGA_TRY_DONE(ruga_pairs_create(cut, &count, &pair));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(distance, count));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(segment, count));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(squares, raster->curve_count));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(k, raster->curve_count));
     measure_pairs(raster, cut, count, pair, distance, segment);
-    for (int p = 0, end = 0; p < count; p++) {
-        k = p == end ? pair_stiffness(cut, stiffness, count, pair, distance, p, &end) : k;
+    pair_stiffness(raster, cut, stiffness, count, pair, distance, squares, k);
+    for (int p = 0; p < count; p++) {
         double square = 2 * distance[p] * distance[p];
-        RUGA_TRY_DONE(
-            add_folding(cloth, 2, pair[p].node, weight, k, (ruga_fold_length){segment[p], square, -square}));
+        RUGA_TRY_DONE(add_folding(cloth, 2, pair[p].node, weight, k[pair[p].curve],
+                                  (ruga_fold_length){segment[p], square, -square}));
     }
 done:
     ruga_release(pair);
     ruga_release(distance);
     ruga_release(segment);
+    ruga_release(squares);
+    ruga_release(k);
     return status;
 }
 

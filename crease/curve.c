@@ -61,10 +61,16 @@ done:
 
 ruga_status ruga_curves_add_polyline(ruga_curves* curves, const ruga_curve* style, int count,
                                      const double (*point)[3]) {
+    bool long_enough = false;
     for (int i = 0; i < count; i++) {
         if (!isfinite(point[i][0]) || !isfinite(point[i][1]) || !isfinite(point[i][2])) {
             return ruga_fail(RUGA_BAD_INPUT, "point %d of crease curve %d is not finite", i, curves->count);
         }
+        long_enough = long_enough || ruga_distance(point[0], point[i]) > 0;
+    }
+    if (!long_enough) {
+        return ruga_fail(RUGA_BAD_INPUT, "crease curve %d has no length: its points are all (%g, %g, %g)",
+                         curves->count, point[0][0], point[0][1], point[0][2]);
     }
     RUGA_TRY(add(curves, style, count));
     ruga_curve* curve = &curves->curve[curves->count - 1];
@@ -174,18 +180,9 @@ done:
     return status;
 }
 
-static int find_group(const ruga_mesh* mesh, const char* name) {
-    for (int g = 0; g < mesh->group_count; g++) {
-        if (strcmp(mesh->group_name[g], name) == 0) {
-            return g;
-        }
-    }
-    return -1;
-}
-
 ruga_status ruga_curves_add_border(ruga_curves* curves, const ruga_curve* style, const ruga_mesh* mesh,
                                    const ruga_connectivity* edges, const char* group) {
-    int g = mesh->face_group ? find_group(mesh, group) : -1;
+    int g = mesh->face_group ? ruga_mesh_find_group(mesh, group) : -1;
     if (g < 0) {
         return ruga_fail(RUGA_BAD_INPUT, "a crease follows the group \"%s\", which the mesh does not have",
                          group);

@@ -11,9 +11,8 @@
 //      turns about it, which gives it freedom; the paper keeps cuts away from vertices. Only at a cut that
 //      stays open are the pieces on its sides kept apart;
 //   4  around an embedded node, the pieces that hold it see it between the copies of the edge's ends that
-//   they
-//      are glued to: each different pair is a copy of the node. Copies that a crease (not an open cut) keeps
-//      apart are to be one place, see sewing.h;
+//      they are glued to: each different pair is a copy of the node. Copies that a crease (not an open cut)
+//      keeps apart are to be one place, see sewing.h;
 //   5  edges, creases and auxiliary chords are listed with the pieces beside them, for bending.
 // Membrane and mass count with the part of the triangle's area that is the piece's material, bending with the
 // part of the edge's length: then a cut changes neither.

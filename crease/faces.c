@@ -50,16 +50,19 @@ static bool is_border(const walker* w, int edge) {
 
 static ruga_status set_dangling_aside(walker* w) {
     ruga_crease_pattern* p = w->pattern;
-    int count = 0;
+    int count = 0, open = 0, end = 0;
     for (int e = 0; e < p->edge_count; e++) {
         w->degree[p->edge[e].vertex[0]]++;
         w->degree[p->edge[e].vertex[1]]++;
     }
     for (bool changed = true; changed;) {
         changed = false;
-        for (int e = 0; e < p->edge_count; e++) {
+        for (int k = 0; k < 2 * p->edge_count; k++) { // there and back: chains are listed either way
+            int e = k < p->edge_count ? k : 2 * p->edge_count - 1 - k;
             const int* v = p->edge[e].vertex;
             if (!w->aside[e] && (w->degree[v[0]] == 1 || w->degree[v[1]] == 1)) {
+                open += is_border(w, e);
+                end = is_border(w, e) && open == 1 ? v[w->degree[v[0]] != 1] : end;
                 w->aside[e] = changed = true;
                 w->degree[v[0]]--;
                 w->degree[v[1]]--;
@@ -67,9 +70,15 @@ static ruga_status set_dangling_aside(walker* w) {
             }
         }
     }
-    return count == 0 ? RUGA_OK
-                      : ruga_crease_pattern_note(
-                            p, "%d lines end within a face: they are creases, but divide no face", count);
+    if (open > 0) {
+        RUGA_TRY(ruga_crease_pattern_note(
+            p, "%d border lines enclose nothing, as the outline is open at (%.6g, %.6g): close it there",
+            open, p->position[end][0], p->position[end][1]));
+    }
+    return count == open
+               ? RUGA_OK
+               : ruga_crease_pattern_note(
+                     p, "%d lines end within a face: they are creases, but divide no face", count - open);
 }
 
 typedef struct spoke {

@@ -172,36 +172,3 @@ double ruga_hinge_energy(const ruga_hinge* hinge, double stiffness, double rest,
     }
     return 0.5 * k * off * off;
 }
-
-static void add_to_pattern(const ruga_hinge* hinge, double hessian[RUGA_HINGE_UNKNOWNS][RUGA_HINGE_UNKNOWNS],
-                           const ruga_sparse* pattern, double* value) {
-    for (int b = 0; b < RUGA_HINGE_UNKNOWNS; b++) {
-        int column = 3 * hinge->node[b / 3] + b % 3;
-        for (int a = 0; a < RUGA_HINGE_UNKNOWNS; a++) {
-            int row = 3 * hinge->node[a / 3] + a % 3;
-            if (row >= column) {
-                int at = ruga_sparse_find(pattern, row, column);
-                RUGA_ASSERT(at >= 0);
-                value[at] += hessian[a][b];
-            }
-        }
-    }
-}
-
-double ruga_hinges_energy(int count, const ruga_hinge* hinge, const double* stiffness, const double* rest,
-                          const double* x, const double* near, double clamp, double* gradient,
-                          const ruga_sparse* pattern, double* value) {
-    double energy = 0;
-    for (int i = 0; i < count; i++) {
-        double own[RUGA_HINGE_NODES][3], hessian[RUGA_HINGE_UNKNOWNS][RUGA_HINGE_UNKNOWNS];
-        energy += ruga_hinge_energy(&hinge[i], stiffness[i], rest[i], x, near ? &near[i] : NULL, clamp,
-                                    gradient ? own : NULL, value ? hessian : NULL);
-        for (int a = 0; a < RUGA_HINGE_NODES && gradient; a++) {
-            ruga_add_scaled(1, own[a], gradient + 3 * (size_t)hinge[i].node[a]);
-        }
-        if (value) {
-            add_to_pattern(&hinge[i], hessian, pattern, value);
-        }
-    }
-    return energy;
-}

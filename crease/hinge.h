@@ -6,7 +6,6 @@
 #ifndef RUGA_CREASE_HINGE_H
 #define RUGA_CREASE_HINGE_H
 
-#include "core/sparse.h"
 #include "crease/cut.h"
 
 enum { RUGA_HINGE_NODES = 6, RUGA_HINGE_UNKNOWNS = 3 * RUGA_HINGE_NODES };
@@ -33,12 +32,5 @@ double ruga_hinge_measure(const ruga_hinge* hinge, const double* x, const double
 double ruga_hinge_energy(const ruga_hinge* hinge, double stiffness, double rest, const double* x,
                          const double* near, double clamp, double gradient[RUGA_HINGE_NODES][3],
                          double hessian[RUGA_HINGE_UNKNOWNS][RUGA_HINGE_UNKNOWNS]);
-
-// Sum over hinges with stiffness [count] N and rest [count] rad; near [count] or NULL. The gradient
-// [nodes][3] is ADDED where not NULL, and so is the Hessian to `value` of `pattern` (3 x 3 blocks over
-// nodes).
-double ruga_hinges_energy(int count, const ruga_hinge* hinge, const double* stiffness, const double* rest,
-                          const double* x, const double* near, double clamp, double* gradient,
-                          const ruga_sparse* pattern, double* value);
 
 #endif

@@ -664,13 +664,13 @@ static ruga_status make_changes(ruga_mend* m, bool pin) {
     if (m->insertion_count > 1) {
         qsort(m->insertion, (size_t)m->insertion_count, sizeof *m->insertion, compare_insertions);
     }
-    for (int i = 0; i < m->insertion_count; i++) {
+    for (int i = 0, first = 0; i < m->insertion_count; i++) { // first: of the path
         const insertion* in = &m->insertion[i];
-        int added =
-            0; // stations that this round put into the same stretch: the order along it finds the place
-        for (int k = 0; k < i; k++) {
-            added += m->insertion[k].path == in->path && m->insertion[k].stretch >= in->stretch &&
-                     m->insertion[k].stretch <= in->last;
+        // Stations that this round put into the same stretch: the order along it finds the place.
+        int added = 0;
+        first = m->insertion[first].path == in->path ? first : i;
+        for (int k = first; k < i; k++) {
+            added += m->insertion[k].stretch >= in->stretch && m->insertion[k].stretch <= in->last;
         }
         int vertex = in->edit >= 0 ? m->edit[in->edit].vertex : in->vertex;
         m->sheet->pinned[vertex] = true;

@@ -14,6 +14,7 @@
 
 #include "core/memory.h"
 #include "core/vec3.h"
+#include "lattice/union_find.h"
 
 #include <string.h>
 
@@ -29,19 +30,6 @@ typedef struct panels {
     int* segment;
     int* queue;
 } panels;
-
-static int root_of(int* parent, int p) {
-    while (parent[p] != p) {
-        p = parent[p] = parent[parent[p]];
-    }
-    return p;
-}
-
-static void join(int* parent, int a, int b) {
-    a = root_of(parent, a);
-    b = root_of(parent, b);
-    parent[a < b ? b : a] = a < b ? a : b;
-}
 
 static void clear(panels* p) {
     ruga_release(p->parent);
@@ -59,22 +47,20 @@ static ruga_status find_panels(const ruga_cut* cut, panels* p) {
     RUGA_TRY(RUGA_NEW_ZERO(p->first, (size_t)cut->piece_count + 2));
     RUGA_TRY(RUGA_NEW(p->segment, 2 * (size_t)cut->segment_count));
     RUGA_TRY(RUGA_NEW(p->queue, cut->piece_count));
-    for (int k = 0; k < cut->piece_count; k++) {
-        p->parent[k] = k;
-    }
+    ruga_sets_reset(p->parent, cut->piece_count);
     for (int b = 0; b < cut->bend_count; b++) {
-        join(p->parent, cut->bend[b].piece[0], cut->bend[b].piece[1]);
+        ruga_sets_unite(p->parent, cut->bend[b].piece[0], cut->bend[b].piece[1]);
     }
     for (int s = 0; s < cut->segment_count; s++) {
         if (cut->segment[s].curve < 0) {
-            join(p->parent, cut->segment[s].piece[0], cut->segment[s].piece[1]);
+            ruga_sets_unite(p->parent, cut->segment[s].piece[0], cut->segment[s].piece[1]);
         }
     }
     int* end = p->first + 1;
     for (int pass = 0; pass < 2; pass++) { // count, then fill
         for (int s = 0; s < cut->segment_count; s++) {
             for (int side = 0; side < 2 && cut->segment[s].curve >= 0; side++) {
-                int root = root_of(p->parent, cut->segment[s].piece[side]);
+                int root = ruga_sets_find(p->parent, cut->segment[s].piece[side]);
                 if (pass == 0) {
                     end[root + 1]++;
                 } else {
@@ -125,8 +111,8 @@ static void place_from(const ruga_cut* cut, panels* p, int root, const double* t
         int a = p->queue[head++];
         for (int k = p->first[a]; k < p->first[a + 1]; k++) {
             const ruga_segment* segment = &cut->segment[p->segment[k]];
-            int from = root_of(p->parent, segment->piece[0]) == a ? 0 : 1;
-            int b = root_of(p->parent, segment->piece[!from]);
+            int from = ruga_sets_find(p->parent, segment->piece[0]) == a ? 0 : 1;
+            int b = ruga_sets_find(p->parent, segment->piece[!from]);
             if (!p->placed[b]) {
                 p->motion[b] = beyond(cut, segment, from, turn[p->segment[k]], &p->motion[a]);
                 p->placed[b] = true;
@@ -136,22 +122,27 @@ static void place_from(const ruga_cut* cut, panels* p, int root, const double* t
     }
 }
 
-static void place_node(const ruga_raster* raster, const ruga_cut* cut, const motion* m, int n, double x[3]) {
-    ruga_multiply3(m->turn, raster->mesh.position + 3 * (size_t)cut->source[n], x);
-    ruga_add_scaled(1, m->shift, x);
+// Each panel's own nodes, y [pieces][3][3], and x with one of them for each node.
+static void place_nodes(const ruga_raster* raster, const ruga_cut* cut, panels* p, double* y, double* x) {
+    ruga_cut_rest(raster, cut, x);
+    for (int k = 0; k < cut->piece_count; k++) {
+        const motion* m = &p->motion[ruga_sets_find(p->parent, k)];
+        for (int i = 0; i < 3; i++) {
+            int n = cut->piece[k].node[i];
+            double* own = y + 9 * (size_t)k + 3 * (size_t)i;
+            ruga_multiply3(m->turn, raster->mesh.position + 3 * (size_t)cut->source[n], own);
+            ruga_add_scaled(1, m->shift, own);
+            memcpy(x + 3 * (size_t)n, own, 3 * sizeof *x);
+        }
+    }
 }
 
 // Where panels share a node, and where copies should meet: how far they are apart.
-static ruga_status check_fit(const ruga_raster* raster, const ruga_cut* cut, panels* p, const double* x,
-                             double tolerance) {
+static ruga_status check_fit(const ruga_cut* cut, const double* y, const double* x, double tolerance) {
     double worst = ruga_cut_gap(cut, x);
-    for (int k = 0; k < cut->piece_count; k++) {
-        for (int i = 0; i < 3; i++) {
-            double own[3];
-            int n = cut->piece[k].node[i];
-            place_node(raster, cut, &p->motion[root_of(p->parent, k)], n, own);
-            worst = fmax(worst, ruga_distance(own, x + 3 * (size_t)n));
-        }
+    for (int k = 0; k < 3 * cut->piece_count; k++) {
+        const double* at = x + 3 * (size_t)cut->piece[k / 3].node[k % 3];
+        worst = fmax(worst, ruga_distance(y + 3 * (size_t)k, at));
     }
     return worst <= tolerance ? RUGA_OK
                               : ruga_fail(RUGA_BAD_INPUT,
@@ -160,37 +151,17 @@ static ruga_status check_fit(const ruga_raster* raster, const ruga_cut* cut, pan
                                           worst);
 }
 
-ruga_status ruga_cut_fold(const ruga_raster* raster, const ruga_cut* cut, const double* turn,
-                          double tolerance, double* x) {
-    ruga_status status = RUGA_OK;
-    panels p = {0};
-    RUGA_TRY_DONE(find_panels(cut, &p));
-    for (int k = 0; k < cut->piece_count; k++) {
-        if (!p.placed[root_of(p.parent, k)]) {
-            place_from(cut, &p, root_of(p.parent, k), turn);
-        }
-    }
-    ruga_cut_rest(raster, cut, x);
-    for (int k = 0; k < cut->piece_count; k++) {
-        const motion* m = &p.motion[root_of(p.parent, k)];
-        for (int i = 0; i < 3; i++) {
-            int n = cut->piece[k].node[i];
-            place_node(raster, cut, m, n, x + 3 * (size_t)n);
-        }
-    }
-    status = check_fit(raster, cut, &p, x, tolerance);
-done:
-    clear(&p);
-    return status;
-}
-
-void ruga_roll_cone(int count, double angle, double* x) {
-    double mean[2] = {0, 0}, s = angle / (2 * RUGA_PI), c = sqrt(1 - s * s);
+static double mean_direction(int count, const double* x) {
+    double mean[2] = {0, 0};
     for (int n = 0; n < count; n++) {
         mean[0] += x[3 * (size_t)n];
         mean[1] += x[3 * (size_t)n + 1];
     }
-    double middle = atan2(mean[1], mean[0]);
+    return atan2(mean[1], mean[0]);
+}
+
+static void roll(int count, double angle, double middle, double* x) {
+    double s = angle / (2 * RUGA_PI), c = sqrt(1 - s * s);
     for (int n = 0; n < count; n++) {
         double* at = x + 3 * (size_t)n;
         double rho = hypot(at[0], at[1]), h = at[2];
@@ -200,4 +171,33 @@ void ruga_roll_cone(int count, double angle, double* x) {
         at[1] = out * sin(phi + middle);
         at[2] = -c * rho + s * h;
     }
+}
+
+void ruga_roll_cone(int count, double angle, double* x) {
+    roll(count, angle, mean_direction(count, x), x);
+}
+
+ruga_status ruga_cut_fold(const ruga_raster* raster, const ruga_cut* cut, const double* turn, double cone,
+                          double tolerance, double* x) {
+    ruga_status status = RUGA_OK;
+    panels p = {0};
+    double* y = NULL;
+    RUGA_TRY_DONE(find_panels(cut, &p));
+    RUGA_TRY_DONE(RUGA_NEW(y, 9 * (size_t)cut->piece_count));
+    for (int k = 0; k < cut->piece_count; k++) {
+        if (!p.placed[ruga_sets_find(p.parent, k)]) {
+            place_from(cut, &p, ruga_sets_find(p.parent, k), turn);
+        }
+    }
+    place_nodes(raster, cut, &p, y, x);
+    if (cone != 0) {
+        double middle = mean_direction(cut->node_count, x);
+        roll(cut->node_count, cone, middle, x);
+        roll(3 * cut->piece_count, cone, middle, y);
+    }
+    status = check_fit(cut, y, x, tolerance);
+done:
+    clear(&p);
+    ruga_release(y);
+    return status;
 }

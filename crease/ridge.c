@@ -2,8 +2,9 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // Tensors at the vertices of the surface at rest:
-//   bending  K = 1/A sum over edges around of (theta - theta0)/2 |e| e e^T      (Cohen-Steiner and Morvan
-//   2003) stress   S of St. Venant and Kirchhoff in plane stress, mean of the faces around by area
+//   bending  K = 1/A sum over edges around of (theta - theta0)/2 |e| e e^T
+//            (Cohen-Steiner and Morvan 2003)
+//   stress   S of St. Venant and Kirchhoff in plane stress, mean of the faces around by area
 // are averaged over `smooth`. Across a ridge, along the unit vector u, the strength f has a maximum: f is the
 // square of the larger eigenvalue of K, whose direction runs along the ridge and u across; or the compression
 // -s of the lesser eigenvalue s of S, u its direction. At the vertices d = grad f . u; on an edge with d of
@@ -366,22 +367,38 @@ static int count_set(const ridges* r, int e) {
     return count;
 }
 
+typedef struct line_end {
+    double x;
+    int edge;
+} line_end;
+
+static int compare_ends(const void* a, const void* b) {
+    const line_end *p = a, *q = b;
+    return p->x != q->x ? (p->x > q->x) - (p->x < q->x) : p->edge - q->edge;
+}
+
 static ruga_status join_ends(ridges* r) {
     ruga_status status = RUGA_OK;
     bridge* list = NULL;
-    int *end = NULL, ends = 0, count = 0, capacity = 0;
+    line_end* end = NULL;
+    int ends = 0, count = 0, capacity = 0;
     RUGA_TRY_DONE(RUGA_NEW(end, r->edges.edge_count));
     for (int e = 0; e < r->edges.edge_count; e++) {
         if (is_end(r, e)) {
-            end[ends++] = e;
+            double x[3];
+            crossing_point(r, e, x);
+            end[ends++] = (line_end){x[0], e};
         }
     }
+    qsort(end, (size_t)ends, sizeof *end, compare_ends);
     for (int i = 0; i < ends; i++) {
-        for (int j = 0; j < i; j++) {
+        for (int j = i - 1; j >= 0 && end[i].x - end[j].x <= REACH * r->edge; j--) {
+            int low = end[i].edge < end[j].edge ? end[i].edge : end[j].edge;
+            int high = end[i].edge + end[j].edge - low;
             double length;
-            if (look_at_each_other(r, end[j], end[i], &length)) {
+            if (look_at_each_other(r, low, high, &length)) {
                 RUGA_TRY_DONE(RUGA_RESERVE(list, capacity, (size_t)count + 1));
-                list[count++] = (bridge){{end[j], end[i]}, length};
+                list[count++] = (bridge){{low, high}, length};
             }
         }
     }
@@ -525,17 +542,32 @@ static double curve_length(const ruga_curve* curve) {
     return length;
 }
 
+typedef struct ranked_curve {
+    double length;
+    int index;
+    ruga_curve curve;
+} ranked_curve;
+
+static int compare_curves(const void* a, const void* b) {
+    const ranked_curve *p = a, *q = b;
+    return p->length != q->length ? (p->length < q->length) - (p->length > q->length) : p->index - q->index;
+}
+
 // Longest first; equal ones stay in their order.
-static void sort_curves(ruga_curves* curves, int first) {
-    for (int i = first + 1; i < curves->count; i++) {
-        ruga_curve own = curves->curve[i];
-        double length = curve_length(&own);
-        int k = i;
-        for (; k > first && curve_length(&curves->curve[k - 1]) < length; k--) {
-            curves->curve[k] = curves->curve[k - 1];
-        }
-        curves->curve[k] = own;
+static ruga_status sort_curves(ruga_curves* curves, int first) {
+    ranked_curve* list = NULL;
+    int count = curves->count - first;
+    RUGA_TRY(RUGA_NEW(list, count));
+    for (int i = 0; i < count; i++) {
+        const ruga_curve* c = &curves->curve[first + i];
+        list[i] = (ranked_curve){curve_length(c), i, *c};
     }
+    qsort(list, (size_t)count, sizeof *list, compare_curves);
+    for (int i = 0; i < count; i++) {
+        curves->curve[first + i] = list[i].curve;
+    }
+    ruga_release(list);
+    return RUGA_OK;
 }
 
 static ruga_status collect(ridges* r, ruga_curves* curves) {
@@ -554,8 +586,7 @@ static ruga_status collect(ridges* r, ruga_curves* curves) {
             }
         }
     }
-    sort_curves(curves, first);
-    return RUGA_OK;
+    return sort_curves(curves, first);
 }
 
 // ------------------------------------------------------------------------------- all of it

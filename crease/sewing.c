@@ -383,25 +383,3 @@ void ruga_seam_factor_clear(ruga_seam_factor* factor) {
     ruga_release(factor->pivot);
     *factor = (ruga_seam_factor){0};
 }
-
-void ruga_seam_factor_solve(const ruga_seam_factor* f, double (*b)[3]) {
-    for (int j = 0; j < f->n; j++) {
-        const double x[3] = {b[j][0], b[j][1], b[j][2]};
-        for (int p = f->start[j]; p < f->start[j + 1]; p++) {
-            double *to = b[f->index[p]], l = f->value[p];
-            to[0] -= l * x[0];
-            to[1] -= l * x[1];
-            to[2] -= l * x[2];
-        }
-    }
-    for (int j = f->n - 1; j >= 0; j--) {
-        double d = 1 / f->pivot[j], x[3] = {d * b[j][0], d * b[j][1], d * b[j][2]};
-        for (int p = f->start[j]; p < f->start[j + 1]; p++) {
-            const double *from = b[f->index[p]], l = f->value[p];
-            x[0] -= l * from[0];
-            x[1] -= l * from[1];
-            x[2] -= l * from[2];
-        }
-        memcpy(b[j], x, sizeof x);
-    }
-}

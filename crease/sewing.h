@@ -43,7 +43,5 @@ typedef struct ruga_seam_factor {
 ruga_status ruga_seam_factor_create(const ruga_sparse* lower, double tolerance, bool* dependent,
                                     ruga_seam_factor* factor);
 void ruga_seam_factor_clear(ruga_seam_factor* factor);
-// Solves for three right sides at once, b [n][3] becomes x; no row may be dependent.
-void ruga_seam_factor_solve(const ruga_seam_factor* factor, double (*b)[3]);
 
 #endif

@@ -301,8 +301,6 @@ done:
 
 // ------------------------------------------------------------------------------- changes
 
-// Room for `vertices` and `faces` more (and as many uvs as they can need). ruga_reallocate keeps what there
-// is.
 static ruga_status grow_array(void* array, size_t count, size_t size) {
     void** pointer = array;
     if (!*pointer) {
@@ -316,6 +314,7 @@ static ruga_status grow_array(void* array, size_t count, size_t size) {
     return RUGA_OK;
 }
 
+// Room for `vertices` and `faces` more, and as many uvs as they can need.
 static ruga_status make_room(ruga_sheet* sheet, int vertices, int faces) {
     ruga_mesh* m = &sheet->mesh;
     size_t v = (size_t)m->vertex_count + (size_t)vertices, f = (size_t)m->triangle_count + (size_t)faces;

@@ -38,9 +38,10 @@ static exr_result_t describe(exr_context_t file, const ruga_image* image, int* l
     for (int c = 0; !result && c < 3; c++) {
         result = exr_add_channel(file, part, channels[c], type, EXR_PERCEPTUALLY_LINEAR, 1, 1);
     }
-    if (!result && image->comment) {
-        result = exr_attr_set_string(file, part, "comments", image->comment);
-    }
+    result = result ? result : exr_attr_set_string(file, part, "comments", image->comment);
+    result = result ? result : exr_attr_set_double(file, part, "valueScale", image->scale);
+    result = result ? result : exr_attr_set_double(file, part, "valueOffset", image->offset);
+    result = result ? result : exr_attr_set_string(file, part, "valueUnit", image->unit);
     result = result ? result : exr_write_header(file);
     return result ? result : exr_get_scanlines_per_chunk(file, part, lines);
 }

@@ -37,7 +37,7 @@ static ruga_status load(const char* path, json_t** root) {
     ruga_text text;
     json_error_t error;
     RUGA_TRY(ruga_text_load(path, &text));
-    *root = json_loadb(text.data, text.size, 0, &error);
+    *root = json_loadb(text.at, (size_t)(text.end - text.at), 0, &error);
     ruga_text_close(&text);
     if (!*root) {
         return ruga_fail(RUGA_BAD_INPUT, "%s:%d: not JSON: %s", path, error.line, error.text);
@@ -185,6 +185,14 @@ static ruga_status read_edge(const reader* r, size_t e, const json_t* ends, cons
         if (!json_is_number(angle) || !(fabs(turn) <= 2 * RUGA_PI)) {
             return fail(r, "edges_foldAngle", e, "is not an angle in degrees");
         }
+    }
+    if ((assignment == RUGA_ASSIGNMENT_MOUNTAIN && turn > 0) ||
+        (assignment == RUGA_ASSIGNMENT_VALLEY && turn < 0)) {
+        RUGA_TRY(ruga_crease_pattern_note(
+            r->pattern,
+            "edges_foldAngle[%zu] is %g degrees, although edges_assignment calls the line a "
+            "%s: the angle counts",
+            e, turn * 180 / RUGA_PI, turn > 0 ? "mountain" : "valley"));
     }
     // An angle of a border or a cut says nothing.
     bool folds = assignment != RUGA_ASSIGNMENT_BORDER && assignment != RUGA_ASSIGNMENT_CUT;
@@ -350,15 +358,6 @@ ruga_status ruga_fold_read(const char* path, int frame, double scale, ruga_creas
         ruga_crease_pattern_clear(pattern);
     }
     return status;
-}
-
-ruga_status ruga_fold_count(const char* path, int* frames) {
-    json_t* root = NULL;
-    RUGA_TRY(load(path, &root));
-    size_t count = json_array_size(json_object_get(root, "file_frames")) + 1;
-    json_decref(root);
-    *frames = count < INT_MAX ? (int)count : INT_MAX;
-    return RUGA_OK;
 }
 
 // ------------------------------------------------------------------------------- mesh

@@ -14,8 +14,6 @@
 // see crease/pattern.h, with a tolerance of 1e-6 of its size; a folded form is taken as it is. RUGA_BAD_INPUT
 // with the field and its number where the file is wrong, RUGA_IO where it cannot be read.
 ruga_status ruga_fold_read(const char* path, int frame, double scale, ruga_crease_pattern* pattern);
-// Number of frames of a file.
-ruga_status ruga_fold_count(const char* path, int* frames);
 
 // Lines by their stroke, as docs/creases.md lists them; y points up afterwards. Curves become polylines
 // within `tolerance` of the drawing's size. One unit of the drawing is `scale` m. Then arranged, with 1e-4 of

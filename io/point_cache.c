@@ -4,6 +4,7 @@
 #include "io/point_cache.h"
 
 #include "core/memory.h"
+#include "io/file_name.h"
 #include "io/mesh_file.h"
 
 #include <errno.h>
@@ -83,31 +84,11 @@ static ruga_status read_file(ruga_point_cache* cache, int sample, double* positi
 
 // ---- a sequence of OBJ files ---------------------------------------------------------------------------
 
-// The one %d, %4d or %04d of a name; NULL where there is none.
-static const char* find_place(const char* path, size_t* length) {
-    for (const char* at = strchr(path, '%'); at; at = strchr(at + 1, '%')) {
-        size_t digits = strspn(at + 1, "0123456789");
-        if (digits <= 2 && at[1 + digits] == 'd') {
-            *length = digits + 2;
-            return at;
-        }
-    }
-    return NULL;
-}
-
-static void name_file(const ruga_point_cache* cache, int number, char* name, size_t size) {
-    size_t length = 0;
-    const char* place = find_place(cache->path, &length);
-    int width = (int)strtol(place + 1, NULL, 10);
-    (void)snprintf(name, size, place[1] == '0' ? "%.*s%0*d%s" : "%.*s%*d%s", (int)(place - cache->path),
-                   cache->path, width, number, place + length);
-}
-
-enum { NAME_MAX_LENGTH = 4096 };
+enum { NAME_MAX_LENGTH = 4096, NUMBER_MAX_LENGTH = 4 }; // a place has two digits at most
 
 static bool file_exists(const ruga_point_cache* cache, int number) {
     char name[NAME_MAX_LENGTH];
-    name_file(cache, number, name, sizeof name);
+    ruga_file_name_number(cache->path, number, name, sizeof name);
     FILE* file = fopen(name, "rb");
     if (file) {
         (void)fclose(file);
@@ -117,7 +98,7 @@ static bool file_exists(const ruga_point_cache* cache, int number) {
 
 static ruga_status read_obj(const ruga_point_cache* cache, int sample, ruga_mesh* mesh) {
     char name[NAME_MAX_LENGTH];
-    name_file(cache, cache->first + sample, name, sizeof name);
+    ruga_file_name_number(cache->path, cache->first + sample, name, sizeof name);
     RUGA_TRY(ruga_mesh_read(name, mesh));
     if (sample > 0 && mesh->vertex_count != cache->point_count) {
         int found = mesh->vertex_count;
@@ -157,22 +138,17 @@ static ruga_status read_sequence(ruga_point_cache* cache, int sample, double* po
 
 // ---- public --------------------------------------------------------------------------------------------
 
-static bool ends_with(const char* path, const char* ending) {
-    size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && strcmp(path + length - tail, ending) == 0;
-}
-
 static ruga_status open_kind(ruga_point_cache* cache) {
     size_t length;
-    if (ends_with(cache->path, ".pc2")) {
+    if (ruga_file_name_ends(cache->path, ".pc2")) {
         return open_file(cache, ruga_pc2_open);
     }
-    cache->time_is_real = ends_with(cache->path, ".mdd");
+    cache->time_is_real = ruga_file_name_ends(cache->path, ".mdd");
     if (cache->time_is_real) {
         return open_file(cache, ruga_mdd_open);
     }
-    if (ends_with(cache->path, ".obj") && find_place(cache->path, &length) &&
-        strlen(cache->path) < NAME_MAX_LENGTH - 32) {
+    if (ruga_file_name_ends(cache->path, ".obj") && ruga_file_name_place(cache->path, &length) &&
+        length <= NUMBER_MAX_LENGTH && strlen(cache->path) < NAME_MAX_LENGTH - 128) {
         return open_sequence(cache);
     }
     return ruga_fail(

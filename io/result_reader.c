@@ -11,6 +11,7 @@
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -165,9 +166,22 @@ static ruga_status get_names(ruga_hdf5* hdf5, hid_t file, mesh_arrays* arrays) {
     return status;
 }
 
+// Nothing that reads a result has to reckon with what is no place. `where`: "frame 3".
+static ruga_status check_places(const char* path, const char* where, int vertex_count, const double* x) {
+    const double farthest = 1e30; // m; its square is a number, and it fits into a float
+    for (int i = 0; x && i < 3 * vertex_count; i++) {
+        if (!(fabs(x[i]) <= farthest)) {
+            return ruga_fail(RUGA_BAD_INPUT, "%s: %s: coordinate %c of vertex %d is %g, which is no place",
+                             path, where, "xyz"[i % 3], i / 3, x[i]);
+        }
+    }
+    return RUGA_OK;
+}
+
 static ruga_status get_mesh_arrays(ruga_hdf5* hdf5, hid_t file, mesh_arrays* a) {
     int rows;
     RUGA_TRY(get_reals(hdf5, file, "/mesh/rest", 3, &a->def.vertex_count, &a->position));
+    RUGA_TRY(check_places(hdf5->path, "/mesh/rest", a->def.vertex_count, a->position));
     RUGA_TRY(get_integers(hdf5, file, "/mesh/triangles", 3, -1, &a->def.triangle_count, &a->triangles));
     RUGA_TRY(
         get_integers(hdf5, file, "/mesh/source_vertex", 1, a->def.vertex_count, &rows, &a->source_vertex));
@@ -600,7 +614,16 @@ ruga_status ruga_result_read_frame(ruga_result_reader* reader, int frame, double
               (!report || ruga_result_get_report(reader->set, (hsize_t)frame, report));
     ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "a frame cannot be read");
     ruga_hdf5_end(&hdf5);
-    return status;
+    RUGA_TRY(status);
+    char where[64];
+    (void)snprintf(where, sizeof where, "frame %d", frame);
+    if (time && !isfinite(*time)) {
+        return ruga_fail(RUGA_BAD_INPUT, "%s: %s: its time is %g: the file is damaged", reader->path, where,
+                         *time);
+    }
+    RUGA_TRY(check_places(reader->path, where, reader->mesh.vertex_count, position));
+    (void)snprintf(where, sizeof where, "frame %d, the interior's surface", frame);
+    return check_places(reader->path, where, reader->mesh.vertex_count, embedded);
 }
 
 ruga_status ruga_result_read_creases(ruga_result_reader* reader, int frame, double* angle, double* rest, double* gap) {

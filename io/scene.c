@@ -190,3 +190,21 @@ void ruga_scene_each(const ruga_scene* scene, ruga_scene_visit* visit, void* con
         visit(v->key, v->value, v->unit, v->given, context);
     }
 }
+
+ruga_status ruga_scene_place_error(const ruga_scene* scene, ruga_status status) {
+    const ruga_scene_parts* parts = scene->storage;
+    const char* sentence = ruga_last_error();
+    size_t length = strspn(sentence, "abcdefghijklmnopqrstuvwxyz_.0123456789");
+    if ((status != RUGA_BAD_INPUT && status != RUGA_BAD_MESH) || length == 0) {
+        return status;
+    }
+    for (const ruga_scene_value* v = parts ? parts->first_value : NULL; v; v = v->next) {
+        bool named =
+            strncmp(v->key, sentence, length) == 0 && (v->key[length] == '\0' || v->key[length] == '.');
+        if (named && v->given) {
+            return v->line > 0 ? ruga_fail_prefix(status, "%s:%d", v->origin, v->line)
+                               : ruga_fail_prefix(status, "%.200s", v->origin);
+        }
+    }
+    return status;
+}

@@ -29,10 +29,14 @@ typedef struct ruga_scene {
 ruga_status ruga_scene_read(const char* path, int set_count, const char* const* sets, ruga_scene* scene);
 ruga_status ruga_scene_read_text(const char* text, const char* name, const char* directory, int set_count,
                                  const char* const* sets, ruga_scene* scene);
-// The same of the text that a result keeps, but without the mesh, whose file may be gone: def has none, and a skin that
-// varies has no values at vertices.
+// The same of the text that a result keeps, but without the mesh, whose file may be gone: def has none, and a
+// skin that varies has no values at vertices.
 ruga_status ruga_scene_read_settings(const char* text, const char* name, ruga_scene* scene);
 void ruga_scene_clear(ruga_scene* scene);
+
+// What ruga_model_create refused begins with a key of the scene, such as "handles.1: ...": the same sentence
+// with file and line before it, where the key is given. Returns `status`.
+ruga_status ruga_scene_place_error(const ruga_scene* scene, ruga_status status);
 
 // Every key with its value (in SI) and whether it was given or is the default, in the scene's order.
 typedef void ruga_scene_visit(const char* key, const char* value, const char* unit, bool given,

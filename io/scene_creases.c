@@ -6,9 +6,11 @@
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "crease/flat.h"
+#include "io/file_name.h"
 #include "io/fold.h"
 #include "io/result.h"
 #include "io/scene_read.h"
+#include "mesh/transfer.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,19 +19,14 @@
 static const double FLAT = 1e-6;          // rad off half a turn
 static const double SVG_TOLERANCE = 1e-3; // of a drawing's size, for curves
 
-static bool ends_with(const char* name, const char* end) {
-    size_t length = strlen(name), tail = strlen(end);
-    return length > tail && strcmp(name + length - tail, end) == 0;
-}
-
 bool ruga_scene_is_pattern(const char* name) {
-    return ends_with(name, ".fold") || ends_with(name, ".svg");
+    return ruga_file_name_ends(name, ".fold") || ruga_file_name_ends(name, ".svg");
 }
 
 // A file that is not there is the scene's mistake, not the disk's.
 ruga_status ruga_scene_read_pattern(const char* path, int frame, ruga_crease_pattern* pattern) {
-    ruga_status status = ends_with(path, ".svg") ? ruga_svg_read(path, 1, SVG_TOLERANCE, pattern)
-                                                 : ruga_fold_read(path, frame, 1, pattern);
+    ruga_status status = ruga_file_name_ends(path, ".svg") ? ruga_svg_read(path, 1, SVG_TOLERANCE, pattern)
+                                                           : ruga_fold_read(path, frame, 1, pattern);
     return status == RUGA_IO ? ruga_fail(RUGA_BAD_INPUT, "%s", ruga_last_error()) : status;
 }
 
@@ -88,6 +85,7 @@ static ruga_status add_lines(loader* l, const ruga_scene_crease* crease, const c
         def.points = points;
         def.point_count = curve->point_count;
         def.closed = curve->closed;
+        def.freedom = def.freedom == RUGA_FREEDOM_AUTO ? curve->freedom : def.freedom;
         def.kind = crease->cut ? RUGA_CREASE_CUT : curve->kind;
         def.assignment = ruga_assignment_letter(edge->assignment);
         def.rest = crease->rest.word ? crease->scale * ruga_crease_pattern_rest(edge) : def.rest;
@@ -137,6 +135,9 @@ static ruga_status add_pattern(loader* l, const ruga_scene_crease* crease, const
     RUGA_TRY_DONE(ruga_crease_pattern_curves(&pattern, &(ruga_curve){0}, false, &curves));
     if (curves.count == 0) {
         status = ruga_fail(RUGA_BAD_INPUT, "%s has no creases", file);
+        for (int i = 0; i < pattern.note_count; i++) { // where they went
+            status = ruga_fail(status, "%s; %s", ruga_last_error(), pattern.note[i]);
+        }
         goto done;
     }
     RUGA_TRY_DONE(add_lines(l, crease, file, &pattern, &curves, l->scene->mesh_unit));
@@ -179,6 +180,38 @@ done:
     return status;
 }
 
+// Curves of another surface would be laid down somewhere all the same.
+static ruga_status check_surface(const ruga_mesh* mesh, const ruga_curve* curve, const char* result) {
+    const double near = 0.01; // of the mesh's diagonal: the same surface in other triangles is nearer
+    double min[3], max[3];
+    int(*corner)[3] = NULL;
+    double(*weight)[3] = NULL;
+    ruga_status status = RUGA_OK;
+    ruga_mesh_bounds(mesh, min, max);
+    RUGA_TRY_DONE(RUGA_NEW(corner, curve->point_count));
+    RUGA_TRY_DONE(RUGA_NEW(weight, curve->point_count));
+    RUGA_TRY_DONE(ruga_mesh_locate(mesh, curve->point_count, curve->point[0], corner, weight));
+    for (int i = 0; i < curve->point_count; i++) {
+        const double* x = curve->point[i];
+        double off[3] = {-x[0], -x[1], -x[2]};
+        for (int k = 0; k < 3; k++) {
+            ruga_add_scaled(weight[i][k], mesh->position + 3 * (size_t)corner[i][k], off);
+        }
+        if (ruga_norm(off) > near * ruga_distance(min, max)) {
+            status = ruga_fail(
+                RUGA_BAD_INPUT,
+                "%s has another surface at rest: its ridge at (%.4g, %.4g, %.4g) is %.3g m away from "
+                "this mesh",
+                result, x[0], x[1], x[2], ruga_norm(off));
+            break;
+        }
+    }
+done:
+    ruga_release(corner);
+    ruga_release(weight);
+    return status;
+}
+
 static ruga_status add_ridges(loader* l, const ruga_scene_crease* crease, const char* directory) {
     ruga_status status = RUGA_OK;
     ruga_crease_pattern pattern = {0};
@@ -186,6 +219,9 @@ static ruga_status add_ridges(loader* l, const ruga_scene_crease* crease, const 
     char* path;
     RUGA_TRY_DONE(ruga_scene_path(directory, crease->result, l->pool, &path));
     RUGA_TRY_DONE(find_ridges(path, crease, l->scene->def.skin.poisson, &curves));
+    for (int c = 0; c < curves.count; c++) {
+        RUGA_TRY_DONE(check_surface(&l->scene->mesh, &curves.curve[c], crease->result));
+    }
     RUGA_TRY_DONE(ruga_crease_pattern_add_curves(&pattern, &curves));
     for (int c = 0, edge = 0; c < curves.count; c++) { // a label is a line of the pattern from here on
         ruga_curve* curve = &curves.curve[c];

@@ -31,9 +31,9 @@ ruga_status ruga_scene_warn(ruga_scene* scene, const char* format, ...) {
 }
 
 // What lies within a crease pattern's outline.
-static ruga_status read_outline(const char* path, ruga_mesh* mesh) {
+static ruga_status read_outline(const char* path, int frame, ruga_mesh* mesh) {
     ruga_crease_pattern pattern = {0};
-    ruga_status status = ruga_scene_read_pattern(path, 0, &pattern);
+    ruga_status status = ruga_scene_read_pattern(path, frame, &pattern);
     if (status == RUGA_OK) {
         status = ruga_crease_pattern_mesh(&pattern, path, mesh);
     }
@@ -42,7 +42,7 @@ static ruga_status read_outline(const char* path, ruga_mesh* mesh) {
 }
 
 // A file that is not there is the scene's mistake, not the disk's.
-static ruga_status read_file(const char* path, ruga_mesh* mesh) {
+static ruga_status read_file(const char* path, int frame, ruga_mesh* mesh) {
     FILE* file = fopen(path, "rb");
     bool failed = !file || (fgetc(file) == EOF && ferror(file)); // a folder opens, but cannot be read
     int error = errno;
@@ -52,7 +52,7 @@ static ruga_status read_file(const char* path, ruga_mesh* mesh) {
     if (failed) {
         return ruga_fail(RUGA_BAD_INPUT, "%s cannot be read: %s", path, strerror(error));
     }
-    return ruga_scene_is_pattern(path) ? read_outline(path, mesh) : ruga_mesh_read(path, mesh);
+    return ruga_scene_is_pattern(path) ? read_outline(path, frame, mesh) : ruga_mesh_read(path, mesh);
 }
 
 ruga_status ruga_scene_path(const char* directory, const char* name, ruga_pool* pool, char** path) {
@@ -71,7 +71,7 @@ static ruga_status read_source(const ruga_yaml_node* node, const ruga_scene_sour
     }
     char* path;
     RUGA_TRY(ruga_scene_path(directory, source->file, pool, &path));
-    return ruga_yaml_fail_at(read_file(path, mesh), ruga_yaml_find(node, "file"), "mesh.file");
+    return ruga_yaml_fail_at(read_file(path, source->frame, mesh), ruga_yaml_find(node, "file"), "mesh.file");
 }
 
 static ruga_status take_groups(const ruga_yaml_node* node, const ruga_names* groups, ruga_mesh* mesh) {

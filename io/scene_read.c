@@ -44,14 +44,24 @@ static bool is_empty(const ruga_yaml_node* node) {
            (node->text[0] == '\0' || strcmp(node->text, "~") == 0 || strcmp(node->text, "null") == 0);
 }
 
-static ruga_status record(reader* r, const char* key, const char* value, const char* unit, bool given) {
+// node: where the value is given; NULL for a default.
+static ruga_status record(reader* r, const ruga_yaml_node* node, const char* key, const char* value,
+                          const char* unit) {
     ruga_scene_value* entry;
     ruga_pool* pool = &r->parts->pool;
     RUGA_TRY(RUGA_POOL_TAKE(pool, entry, 1));
-    char *key_copy, *value_copy;
+    char *key_copy, *value_copy, *origin = NULL;
     RUGA_TRY(ruga_pool_copy(pool, key, strlen(key), &key_copy));
     RUGA_TRY(ruga_pool_copy(pool, value, strlen(value), &value_copy));
-    *entry = (ruga_scene_value){key_copy, value_copy, strcmp(unit, "1") == 0 ? "" : unit, given, NULL};
+    if (node) {
+        RUGA_TRY(ruga_pool_copy(pool, node->origin, strlen(node->origin), &origin));
+    }
+    *entry = (ruga_scene_value){.key = key_copy,
+                                .value = value_copy,
+                                .unit = strcmp(unit, "1") == 0 ? "" : unit,
+                                .given = node != NULL,
+                                .origin = origin,
+                                .line = node ? node->line : 0};
     if (r->parts->last_value) {
         r->parts->last_value->next = entry;
     } else {
@@ -403,7 +413,8 @@ static ruga_status read_points(reader* r, const place* p, ruga_string* value) {
 static ruga_status read_values(reader* r, const place* p, ruga_string* value) {
     const ruga_yaml_node* node = p->node;
     ruga_scene_points points = {.count = node->kind == RUGA_YAML_LIST ? node->count : 1};
-    points.word = node->kind == RUGA_YAML_SCALAR && p->key->choices && strcmp(node->text, p->key->choices) == 0;
+    points.word =
+        node->kind == RUGA_YAML_SCALAR && p->key->choices && strcmp(node->text, p->key->choices) == 0;
     if (points.count == 0) {
         return fail_kind(p, node, "a value or a list of them");
     }
@@ -479,7 +490,8 @@ static ruga_status read_leaf(reader* r, const place* p, bool given) {
     }
     if (status == RUGA_OK) {
         bool angle = p->key->kind == RUGA_KEY_SIZE && r->parts->source.make.shape == RUGA_SHAPE_SKIRT;
-        status = record(r, p->shown, value.data, angle ? "m, m, rad" : p->key->dimension, given);
+        status =
+            record(r, given ? p->node : NULL, p->shown, value.data, angle ? "m, m, rad" : p->key->dimension);
     }
     ruga_string_clear(&value);
     return status;
@@ -552,7 +564,7 @@ static ruga_status read_absent(reader* r, const place* p, const ruga_yaml_node* 
     if (fallback[0] == '(') {
         char words[64];
         (void)snprintf(words, sizeof words, "%.*s", (int)strcspn(fallback + 1, ")"), fallback + 1);
-        return record(r, p->shown, words, "", false);
+        return record(r, NULL, p->shown, words, "");
     }
     if (p->key->kind == RUGA_KEY_SECTION) {
         return read_section(r, p->key->path, p->shown, NULL, above, p->target);
@@ -634,7 +646,7 @@ static ruga_status read_entries(reader* r, const place* p) {
         (void)snprintf(shown, sizeof shown, "%.100s.%d", p->shown, i);
         RUGA_TRY(read_section(r, section, shown, item, item, entry + size * (size_t)i));
     }
-    return node->count > 0 ? RUGA_OK : record(r, p->shown, "none", "", true);
+    return node->count > 0 ? RUGA_OK : record(r, node, p->shown, "none", "");
 }
 
 // The one word that may stand in place of a section's map; NULL where there is none.
@@ -648,8 +660,8 @@ static ruga_status read_subsection(reader* r, const place* p) {
     if (p->node->kind == RUGA_YAML_SCALAR && word && strcmp(p->node->text, word) == 0) {
         char all[PATH_LENGTH]; // region: all is short for region: {all: true}
         (void)snprintf(all, sizeof all, "%.100s.all", p->shown);
-        return strcmp(word, "all") == 0 ? record(r, all, "true", "", true)
-                                        : record(r, p->shown, word, "", true);
+        return strcmp(word, "all") == 0 ? record(r, p->node, all, "true", "")
+                                        : record(r, p->node, p->shown, word, "");
     }
     if (p->node->kind != RUGA_YAML_MAP) {
         char needed[64];

@@ -13,6 +13,8 @@
 typedef struct ruga_scene_value {
     const char *key, *value, *unit;
     bool given;
+    const char* origin; // where it is given, as in a node of YAML
+    int line;
     struct ruga_scene_value* next;
 } ruga_scene_value;
 

@@ -65,8 +65,10 @@ const ruga_key ruga_keys[] = {
 
     SECTION("mesh", REQUIRED, "The surface: either `file` or `make`."),
     OTHER("mesh.file", RUGA_KEY_TEXT, SOURCE(file), "", NULL,
-          "A surface file (.obj .ply .stl .off .gltf .glb), relative to the scene file's folder. Of a crease pattern "
-          "(.fold .svg) what lies within its outline, in triangles that know nothing of the creases: with `remesh`."),
+          "A surface file (.obj .ply .stl .off .gltf .glb), relative to the scene file's folder. Of a crease "
+          "pattern "
+          "(.fold .svg) what lies within its outline, in triangles that know nothing of the creases: with "
+          "`remesh`."),
     SECTION("mesh.make", NULL, "A shape made on the spot, in metres, centred at the origin."),
     CHOICE("mesh.make.shape", SOURCE(make.shape), "pillow", "sheet|slab|bar|pillow|sphere|skirt",
            "What is made; sheet and skirt lie in z = 0 with normals +z, the others are closed."),
@@ -79,6 +81,7 @@ const ruga_key ruga_keys[] = {
              "Number of quads along X and Y, or around and across, in place of `edge`."),
     CHOICE("mesh.make.pattern", SOURCE(make.pattern), "equilateral", "equilateral|diagonal|alternating",
            "How the triangles lie."),
+    INTEGERS("mesh.frame", 1, SOURCE(frame), "0", 0, 1000000, "The frame of a FOLD file."),
     OTHER("mesh.unit", RUGA_KEY_UNIT, SOURCE(unit), "m", "m",
           "The unit of length of the file's coordinates, such as mm or inch. A result above 100 m or below 1 "
           "mm "
@@ -91,21 +94,27 @@ const ruga_key ruga_keys[] = {
            "Length of an edge of the new mesh."),
 
     SECTION("skin", "{}", "The thin shell."),
-    CHOICE("skin.model", MODEL(skin.model), "shell", "shell|springs|volume",
-           "shell: a thin shell. volume: thin stiff elements of a volume that is fine throughout, `lattice.cells` "
-           "along its longest side and graded in depth; a flat rectangular sheet in a plane of z with `fill: box` and "
-           "prescribed stretches only. `coupling` says nothing then. springs: cloth of linear, bending and axial-bending springs with the stiffness of the shell but Poisson's ratio 1/3, in dynamic motion."),
+    CHOICE(
+        "skin.model", MODEL(skin.model), "shell", "shell|springs|volume",
+        "shell: a thin shell. volume: thin stiff elements of a volume that is fine throughout, "
+        "`lattice.cells` "
+        "along its longest side and graded in depth; a flat rectangular sheet in a plane of z with `fill: "
+        "box` and "
+        "prescribed stretches only. `coupling` says nothing then. springs: cloth of linear, bending and "
+        "axial-bending springs with the stiffness of the shell but Poisson's ratio 1/3, in dynamic motion."),
     NUMBER("skin.thickness", MODEL(skin.thickness), "m", "2 mm", POSITIVE, "Thickness h."),
     NUMBER("skin.young", MODEL(skin.young), "Pa", "40 MPa", POSITIVE, "Young's modulus."),
     NUMBER("skin.poisson", MODEL(skin.poisson), "1", "0.3", POISSON, "Poisson's ratio."),
     NUMBER("skin.density", MODEL(skin.density), "kg/m^3", "900 kg/m^3", NOT_NEGATIVE, "Density."),
     CHOICE("skin.membrane", MODEL(skin.membrane), "baraff-witkin", "baraff-witkin|stvk",
            "Stretching energy: Baraff-Witkin or St Venant-Kirchhoff; the same at small strain."),
-    CHOICE("skin.bending", MODEL(skin.bending), "hinge", "hinge|kirchhoff-love",
-           "Bending energy. hinge: an angle at each edge, as the 2013 paper; exact for cylinders on equilateral "
-           "triangles, but 5 to 20 % too stiff on irregular ones, and with Poisson's ratio -1/3 whatever "
-           "`poisson`. kirchhoff-love: directors at the middles of edges, right on any mesh and for any curvature, "
-           "at three to four times the time."),
+    CHOICE(
+        "skin.bending", MODEL(skin.bending), "hinge", "hinge|kirchhoff-love",
+        "Bending energy. hinge: an angle at each edge, as the 2013 paper; exact for cylinders on equilateral "
+        "triangles, but 5 to 20 % too stiff on irregular ones, and with Poisson's ratio -1/3 whatever "
+        "`poisson`. kirchhoff-love: directors at the middles of edges, right on any mesh and for any "
+        "curvature, "
+        "at three to four times the time."),
     NUMBERS("skin.growth", 2, MODEL(skin.growth), "1", "[1, 1]", POSITIVE,
             "Rest lengths along and across the skin's first direction are multiplied by these."),
     CHOICE(
@@ -115,13 +124,16 @@ const ruga_key ruga_keys[] = {
     NUMBER("skin.relaxation", MODEL(skin.relaxation), "s", "20 ms", POSITIVE,
            "Relaxation time of damped motion."),
     NUMBER("skin.damping", MODEL(skin.damping), "s", "0 s", NOT_NEGATIVE,
-           "Of dynamic motion: the viscous stress over the elastic stress of the strain rate. A mode of frequency w "
+           "Of dynamic motion: the viscous stress over the elastic stress of the strain rate. A mode of "
+           "frequency w "
            "loses the part w damping / 2 of critical damping."),
     NUMBER("skin.drag", MODEL(skin.drag), "1/s", "0 1/s", NOT_NEGATIVE,
            "Of dynamic motion: the force over the momentum with which the air around holds every part back."),
     CHOICE("skin.creases", MODEL(skin.creases), "angle", "angle|pairs|across",
-           "Hinges of creases. angle: signed springs against the fold angle. In dynamic motion also the 2015 paper's springs, "
-           "which do not tell valley from mountain. pairs: between nodes and their virtual copies; their stiffness falls "
+           "Hinges of creases. angle: signed springs against the fold angle. In dynamic motion also the 2015 "
+           "paper's springs, "
+           "which do not tell valley from mountain. pairs: between nodes and their virtual copies; their "
+           "stiffness falls "
            "with cos^2 of half the rest angle. across: bending and axial-bending springs across the crease."),
     ENTRIES("skin.vary", "(none)",
             "Where the skin differs from the values above: each entry with a region, or one of gradient, "
@@ -199,7 +211,7 @@ const ruga_key ruga_keys[] = {
         "then the bump; linear in between, held outside."),
     NUMBER("prescribed.N.time", KEYFRAME(time), "s", "0 s", ANY,
            "Time; each keyframe is later than the one before."),
-    {"prescribed.N.stretch", RUGA_KEY_STRETCH, 3, KEYFRAME(matrix), "1", "[1, 1, 1]", ANY, NULL,
+    {"prescribed.N.stretch", RUGA_KEY_STRETCH, 3, KEYFRAME(matrix), "1", "[1, 1, 1]", POSITIVE, NULL,
      "Stretch along x, y and z. Not together with `matrix`."},
     ROWS("prescribed.N.matrix", 3, KEYFRAME(matrix), "1", "Three rows of any linear map."),
     NUMBERS("prescribed.N.translate", 3, KEYFRAME(translate), "m", "[0, 0, 0]", ANY, "Displacement."),
@@ -213,10 +225,12 @@ const ruga_key ruga_keys[] = {
             "Direction, of any length but 0."),
 
     SECTION("follow", "(none)",
-            "A moving surface that the interior follows, in place of `prescribed`: the lattice is fitted to each of its "
+            "A moving surface that the interior follows, in place of `prescribed`: the lattice is fitted to "
+            "each of its "
             "samples, linear in between, held outside."),
     OTHER("follow.file", RUGA_KEY_TEXT, FOLLOW(file), "", REQUIRED,
-          "A point cache (.pc2, .mdd) of the mesh's file, or its .obj files, numbered from 0 or 1 by %d or %04d in the "
+          "A point cache (.pc2, .mdd) of the mesh's file, or its .obj files, numbered from 0 or 1 by %d or "
+          "%04d in the "
           "name; the same vertices in the same order, in the mesh's unit and scale."),
     NUMBER("follow.rate", FOLLOW(rate), "1/s", "24 1/s", POSITIVE,
            "Samples per second. Not for .mdd, which has times of its own."),
@@ -230,12 +244,17 @@ const ruga_key ruga_keys[] = {
              "Number of frames after frame 0, the start. The only key that may change for a resumed run."),
     SECTION("start", "{}", "How a skin with interior: none begins."),
     NUMBER("start.fold", MODEL(start.fold), "1", "0", ANY,
-           "The flat panels between straight creases are turned by this part of the creases' rest angles at time 0, and "
+           "The flat panels between straight creases are turned by this part of the creases' rest angles at "
+           "time 0, and "
            "the whole is laid as near to where it was as it goes. Refused where panels would have to bend."),
     NUMBER("start.cone", MODEL(start.cone), "rad", "0 rad", NOT_NEGATIVE,
-           "In dynamic motion. Then a sector of the plane z = 0 about the origin that has this angle is rolled into a "
+           "In dynamic motion. Then a sector of the plane z = 0 about the origin that has this angle is "
+           "rolled into a "
            "whole cone, its tip at the origin and its axis along -z. Its first panel stays where it was."),
-    NUMBERS("start.velocity", 3, MODEL(start.velocity), "m/s", "[0, 0, 0]", ANY, "In dynamic motion. Velocity of what is not held."),
+    NUMBERS("start.velocity", 3, MODEL(start.velocity), "m/s", "[0, 0, 0]", ANY,
+            "In dynamic motion. Velocity of what is not held."),
+    NUMBERS("start.spin", 3, MODEL(start.spin), "rad/s", "[0, 0, 0]", ANY,
+            "In dynamic motion. Angular velocity about the origin of what is not held, added to that."),
     NUMBERS("gravity", 3, MODEL(gravity), "m/s^2", "[0, 0, 0]", ANY, "Acceleration on skin and interior."),
 
     ENTRIES("handles", "(none)",
@@ -286,9 +305,11 @@ const ruga_key ruga_keys[] = {
     FLAG("solver.allow_coarse", MODEL(solver.allow_coarse), "false",
          "Whether to run with fewer than 3 edges per wavelength."),
 
-    ENTRIES("creases", "(none)", "Curves about which the skin folds, or along which it is cut; docs/creases.md."),
+    ENTRIES("creases", "(none)",
+            "Curves about which the skin folds, or along which it is cut; docs/creases.md."),
     SECTION("creases.N.curve", REQUIRED,
-            "Where: one of fold, svg, polyline, uv, vertices, group, stress. Points in metres in the mesh's frame after `unit` "
+            "Where: one of fold, svg, polyline, uv, vertices, group, stress. Points in metres in the mesh's "
+            "frame after `unit` "
             "and `scale`, which also apply to fold and svg; what hangs over the border is trimmed."),
     OTHER("creases.N.curve.fold", RUGA_KEY_TEXT, CREASE(fold), "", NULL,
           "All creases of a FOLD file, relative to the scene file's folder; its cuts (C) are cut."),
@@ -299,10 +320,13 @@ const ruga_key ruga_keys[] = {
            "Two or more points, brought to the nearest place of the surface."),
     POINTS("creases.N.curve.uv", 2, CREASE(uv), "1", "Two or more points in the mesh's texture coordinates."),
     OTHER("creases.N.curve.vertices", RUGA_KEY_VERTICES, CREASE(path), "", NULL,
-          "A path along edges: vertices by their number in the file, from 0; for a made shape, of the mesh itself."),
-    OTHER("creases.N.curve.group", RUGA_KEY_TEXT, CREASE(group), "", NULL, "The border of a group of the mesh."),
-    SECTION("creases.N.curve.stress", NULL,
-            "Along the ridges of a result, as `ruga creases` finds them; its surface at rest is to be this one."),
+          "A path along edges: vertices by their number in the file, from 0; for a made shape, of the mesh "
+          "itself."),
+    OTHER("creases.N.curve.group", RUGA_KEY_TEXT, CREASE(group), "", NULL,
+          "The border of a group of the mesh."),
+    SECTION(
+        "creases.N.curve.stress", NULL,
+        "Along the ridges of a result, as `ruga creases` finds them; its surface at rest is to be this one."),
     OTHER("creases.N.curve.stress.result", RUGA_KEY_TEXT, CREASE(result), "", REQUIRED,
           "The result file, relative to the scene file's folder."),
     CHOICE("creases.N.curve.stress.from", CREASE(from), "stress", "bending|stress",
@@ -318,19 +342,25 @@ const ruga_key ruga_keys[] = {
          "Whether the last point of polyline or uv is joined to the first."),
     FLAG("creases.N.cut", CREASE(cut), "false", "Whether the curve is cut and stays open, without a hinge."),
     CHOICE("creases.N.freedom", CREASE(freedom), "auto", "auto|single|full",
-           "single: one hinge for the whole curve, right where it is straight and of one angle. full: what a mesh that "
-           "conforms to the curve may do. auto: full where the curve bends, closes, meets another, or its values vary."),
+           "single: one hinge for the whole curve, right where it is straight and of one angle. full: what a "
+           "mesh that "
+           "conforms to the curve may do. auto: full where the curve bends, closes, meets another, or its "
+           "values vary."),
     NUMBER("creases.N.start", CREASE(start), "s", "0 s", NOT_NEGATIVE,
-           "In dynamic motion: until then the curve bends like the material beside it, then it is a crease. The sheet is "
+           "In dynamic motion: until then the curve bends like the material beside it, then it is a crease. "
+           "The sheet is "
            "cut from the beginning, so freedom: full is what leaves it free to bend until then."),
-    SECTION("creases.N.hinge", "{}", "The spring about the curve, k l / 2 (theta - rest)^2 for a length l of it."),
+    SECTION("creases.N.hinge", "{}",
+            "The spring about the curve, k l / 2 (theta - rest)^2 for a length l of it."),
     VALUES("creases.N.hinge.stiffness", CREASE(stiffness), "N", "0.02 N", NOT_NEGATIVE, NULL,
            "k, in N m/rad for each m. One value, or one for each point of polyline, uv or vertices."),
     NUMBER("creases.N.hinge.length", CREASE(length), "m", NULL, POSITIVE,
            "In place of stiffness: k = E h^3 / (12 (1 - nu^2)) over this length."),
     VALUES("creases.N.hinge.rest", CREASE(rest), "rad", "(as the mesh has it)", ANY, "assigned",
-           "Angle at which the spring has no moment: 0 when flat, positive for a valley, where both sides turn to where "
-           "their normals point. assigned: that of the file, +180 deg for valleys and -180 deg for mountains where it "
+           "Angle at which the spring has no moment: 0 when flat, positive for a valley, where both sides "
+           "turn to where "
+           "their normals point. assigned: that of the file, +180 deg for valleys and -180 deg for mountains "
+           "where it "
            "has none."),
     NUMBER("creases.N.hinge.scale", CREASE(scale), "1", "1", ANY, "A factor on rest."),
     ENTRIES("creases.N.hinge.animate", "(none)",

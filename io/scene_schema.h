@@ -51,6 +51,7 @@ typedef struct ruga_scene_source {
     double unit, scale;
     ruga_names groups;
     double remesh_edge; // m; 0 = none
+    int frame;          // of a FOLD file
 } ruga_scene_source;
 
 // The first and second value of an entry of skin.vary; count 0 = it does not set this one.

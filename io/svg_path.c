@@ -48,7 +48,8 @@ bool ruga_svg_number(const char** at, const char* end, double* value) {
     if (*at >= end || !strchr("+-.0123456789", **at)) { // not nan, inf or hexadecimal numbers
         return false;
     }
-    if (**at == '0' && end - *at > 1 && ((*at)[1] == 'x' || (*at)[1] == 'X')) {
+    const char* digit = *at + (**at == '+' || **at == '-');
+    if (end - digit > 1 && digit[0] == '0' && (digit[1] == 'x' || digit[1] == 'X')) {
         return false;
     }
     char* stop;
@@ -132,7 +133,7 @@ static int steps_for(const ruga_svg_pen* pen, double second_derivative) {
         return 1;
     }
     double steps = ceil(sqrt(second_derivative / (8 * pen->tolerance)));
-    return steps < 1 ? 1 : steps > MOST_STEPS ? MOST_STEPS : (int)steps;
+    return !(steps > 1) ? 1 : steps > MOST_STEPS ? MOST_STEPS : (int)steps;
 }
 
 // p [degree + 1][2], from d->at on

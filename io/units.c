@@ -40,6 +40,7 @@ static const struct {
     {"kg/m^3", "a density", "a density (kg/m^3)"},
     {"kg/m^2", "a mass per area", "a mass per area (kg/m^2)"},
     {"1/s", "a rate", "a rate (1/s)"},
+    {"rad/s", "an angular velocity", "an angular velocity (rad/s)"},
     {"m/s", "a speed", "a speed (m/s)"},
     {"m/s^2", "an acceleration", "an acceleration (m/s^2)"},
     {"J", "an energy", "an energy (J)"},

@@ -145,10 +145,8 @@ static ruga_status fit_cells(const double extent[3], double size, ruga_lattice* 
 static void sum_normals(const ruga_mesh* mesh, double normal[3]) {
     normal[0] = normal[1] = normal[2] = 0;
     for (int t = 0; t < mesh->triangle_count; t++) {
-        const int* corner = mesh->triangle + 3 * (size_t)t;
         double n[3];
-        ruga_triangle_normal(mesh->position + 3 * (size_t)corner[0], mesh->position + 3 * (size_t)corner[1],
-                             mesh->position + 3 * (size_t)corner[2], n);
+        ruga_mesh_triangle_normal(mesh, t, n);
         ruga_add_scaled(1, n, normal);
     }
 }

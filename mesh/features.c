@@ -47,11 +47,6 @@ static const double* point(const finder* x, int v) {
     return x->mesh->position + 3 * (size_t)v;
 }
 
-static void face_normal(const finder* x, int f, double n[3]) {
-    const int* v = x->mesh->triangle + 3 * (size_t)f;
-    ruga_triangle_normal(point(x, v[0]), point(x, v[1]), point(x, v[2]), n);
-}
-
 static void classify_edges(finder* x) {
     const ruga_mesh* mesh = x->mesh;
     for (int e = 0; e < x->edges->edge_count; e++) {
@@ -64,8 +59,8 @@ static void classify_edges(finder* x) {
             continue;
         }
         double m[3], n[3];
-        face_normal(x, f[0], m);
-        face_normal(x, f[1], n);
+        ruga_mesh_triangle_normal(x->mesh, f[0], m);
+        ruga_mesh_triangle_normal(x->mesh, f[1], n);
         if (ruga_normalize(m) > 0 && ruga_normalize(n) > 0 && x->keep > RUGA_KEEP_FIRM &&
             ruga_dot(m, n) < sharp_cosine) {
             x->line[e] = LINE_SHARP;
@@ -161,9 +156,7 @@ static void measure_patches(finder* x) {
     memset(x->area, 0, (size_t)x->features->patch_count * sizeof *x->area);
     memset(x->border, 0, (size_t)x->features->patch_count * sizeof *x->border);
     for (int f = 0; f < x->mesh->triangle_count; f++) {
-        double n[3];
-        face_normal(x, f, n);
-        x->area[x->features->patch[f]] += 0.5 * ruga_norm(n);
+        x->area[x->features->patch[f]] += ruga_mesh_triangle_area(x->mesh, f);
     }
     for (int e = 0; e < x->edges->edge_count; e++) {
         for (int i = 0; i < 2 && x->line[e] != LINE_NONE; i++) {

@@ -26,20 +26,10 @@ enum { ARC_SAMPLES = 512 };
 
 static const char* const shape_names[RUGA_SHAPE_COUNT] = {"sheet",  "slab",   "bar",
                                                           "pillow", "sphere", "skirt"};
-static const char* const pattern_names[] = {"equilateral", "diagonal", "alternating"};
 
 int ruga_shape_from_name(const char* name) {
     for (int i = 0; i < RUGA_SHAPE_COUNT; i++) {
         if (strcmp(name, shape_names[i]) == 0) {
-            return i;
-        }
-    }
-    return -1;
-}
-
-int ruga_pattern_from_name(const char* name) {
-    for (int i = 0; i < (int)(sizeof pattern_names / sizeof *pattern_names); i++) {
-        if (strcmp(name, pattern_names[i]) == 0) {
             return i;
         }
     }
@@ -536,7 +526,10 @@ static ruga_status check_size(ruga_make_def* def) {
     double* size = def->size;
     for (int k = 0; k < 3; k++) {
         bool missing = size[k] == 0 && k >= needed[def->shape];
-        if (!isfinite(size[k]) || !(size[k] > 0 || missing)) {
+        // A sheet has no third size, and a ball is as wide as it is high.
+        bool surplus = (def->shape == RUGA_SHAPE_SHEET && k == 2 && size[k] > 0) ||
+                       (def->shape == RUGA_SHAPE_SPHERE && size[k] > 0 && size[k] != size[0]);
+        if (!isfinite(size[k]) || !(size[k] > 0 || missing) || surplus) {
             return fail_size(def);
         }
     }

@@ -31,9 +31,8 @@ typedef struct ruga_make_def {
     ruga_pattern pattern;
 } ruga_make_def;
 
-// Names: "sheet", "slab", ...; "equilateral", ... -1 where there is none.
+// Names: "sheet", "slab", ...; -1 where there is none.
 int ruga_shape_from_name(const char* name);
-int ruga_pattern_from_name(const char* name);
 const char* ruga_shape_name(ruga_shape shape);
 
 ruga_status ruga_mesh_make(const ruga_make_def* def, ruga_mesh* mesh);

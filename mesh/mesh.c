@@ -57,6 +57,15 @@ static ruga_status copy_names(const char* const* source, int count, char*** name
     return RUGA_OK;
 }
 
+int ruga_mesh_find_group(const ruga_mesh* mesh, const char* name) {
+    for (int g = 0; g < mesh->group_count; g++) {
+        if (name && strcmp(mesh->group_name[g], name) == 0) {
+            return g;
+        }
+    }
+    return -1;
+}
+
 int ruga_mesh_find_attribute(const ruga_mesh* mesh, const char* name) {
     for (int a = 0; a < mesh->attribute_count; a++) {
         if (strcmp(mesh->attribute_name[a], name) == 0) {
@@ -398,16 +407,24 @@ static void face_corners(const ruga_mesh* mesh, const double* position, int f, c
     }
 }
 
+void ruga_mesh_triangle_normal(const ruga_mesh* mesh, int f, double n[3]) {
+    const double* x[3];
+    face_corners(mesh, mesh->position, f, x);
+    ruga_triangle_normal(x[0], x[1], x[2], n);
+}
+
+double ruga_mesh_triangle_area(const ruga_mesh* mesh, int f) {
+    double n[3];
+    ruga_mesh_triangle_normal(mesh, f, n);
+    return 0.5 * ruga_norm(n);
+}
+
 double ruga_mesh_area(const ruga_mesh* mesh) {
     double sum = 0;
     for (int f = 0; f < mesh->triangle_count; f++) {
-        const double* x[3];
-        double n[3];
-        face_corners(mesh, mesh->position, f, x);
-        ruga_triangle_normal(x[0], x[1], x[2], n);
-        sum += ruga_norm(n);
+        sum += ruga_mesh_triangle_area(mesh, f);
     }
-    return sum / 2;
+    return sum;
 }
 
 double ruga_mesh_volume(const ruga_mesh* mesh) {
@@ -442,11 +459,7 @@ double ruga_mesh_mean_edge(const ruga_mesh* mesh) {
 void ruga_mesh_vertex_areas(const ruga_mesh* mesh, double* area) {
     memset(area, 0, (size_t)mesh->vertex_count * sizeof *area);
     for (int f = 0; f < mesh->triangle_count; f++) {
-        const double* x[3];
-        double n[3];
-        face_corners(mesh, mesh->position, f, x);
-        ruga_triangle_normal(x[0], x[1], x[2], n);
-        double third = ruga_norm(n) / 6;
+        double third = ruga_mesh_triangle_area(mesh, f) / 3;
         for (int i = 0; i < 3; i++) {
             area[mesh->triangle[3 * (size_t)f + (size_t)i]] += third;
         }

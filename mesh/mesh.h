@@ -34,6 +34,8 @@ ruga_status ruga_mesh_from_def(const ruga_mesh_def* def, ruga_mesh* mesh);
 // A view: the pointers are the mesh's own.
 ruga_mesh_def ruga_mesh_as_def(const ruga_mesh* mesh);
 
+// Index of a group, -1 = there is none of this name (which may be NULL).
+int ruga_mesh_find_group(const ruga_mesh* mesh, const char* name);
 // Index of an attribute, -1 = there is none of this name.
 int ruga_mesh_find_attribute(const ruga_mesh* mesh, const char* name);
 // Takes over names and number of the attributes of `source`, with room for their values, which are not set.
@@ -44,6 +46,9 @@ ruga_status ruga_mesh_allocate_attributes(const ruga_mesh* source, ruga_mesh* me
 ruga_status ruga_mesh_extract_groups(const ruga_mesh* mesh, int count, const char* const* names,
                                      ruga_mesh* part);
 
+// (b - a) x (c - a) of a triangle's corners at rest: twice its area, along its normal.
+void ruga_mesh_triangle_normal(const ruga_mesh* mesh, int f, double n[3]);
+double ruga_mesh_triangle_area(const ruga_mesh* mesh, int f);
 void ruga_mesh_bounds(const ruga_mesh* mesh, double min[3], double max[3]);
 double ruga_mesh_area(const ruga_mesh* mesh);
 // Signed volume by the divergence theorem; meaningful for a closed mesh.

@@ -65,8 +65,11 @@ def speed_up(rows):
 
 
 def main():
-    directory = pathlib.Path(sys.argv[1])
-    rows = [row for path in directory.glob("*.json") if path.name != "bench.json" for row in json.loads(path.read_text())]
+    directory = pathlib.Path(sys.argv[1] if len(sys.argv) == 2 else "")
+    paths = sorted(path for path in directory.glob("*.json") if path.name != "bench.json")
+    if len(sys.argv) != 2 or not paths:
+        sys.exit("usage: bench_table.py DIR, the folder of the cases' files CASE.json that script/bench wrote")
+    rows = [row for path in paths for row in json.loads(path.read_text())]
     rows.sort(key=lambda row: (row["unknowns"], row["clusters"], row["threads"]))
     lines = ["| " + " | ".join(COLUMNS) + " |", "|---" * len(COLUMNS) + "|"]
     lines += ["| " + " | ".join(map(str, cells(row, rows))) + " |" for row in rows]

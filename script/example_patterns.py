@@ -3,8 +3,9 @@
 # Copyright (c) 2026 The Ruga authors
 """Draws the crease patterns of examples/ as FOLD files, in metres: python3 script/example_patterns.py
 
-knife_pleats, box_pleats: radial creases of a skirt's sector, as `mesh.make` lays it (about the origin, from angle 0 on),
-each within a column of quads of its own and off the lines of nodes. paper_plane: a sheet of A4 folded to a dart.
+knife_pleats, box_pleats: radial creases of a skirt's ring, as `mesh.make` lays it (about the origin, from angle 0 on),
+each within a column of quads of its own and off the lines of nodes, but for the seam of the box pleats.
+paper_plane: a sheet of A4 folded to a dart.
 """
 import json
 import math
@@ -13,7 +14,7 @@ import os
 EXAMPLES = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "examples")
 
 
-def write(name, title, vertices, edges):
+def write(name, title, vertices, edges, faces=None):
     """edges: (vertex, vertex, assignment), with the angle in degrees where it is not the assignment's own."""
     fold = {
         "file_spec": 1.1, "file_creator": "script/example_patterns.py", "frame_title": title, "frame_unit": "m",
@@ -22,24 +23,24 @@ def write(name, title, vertices, edges):
         "edges_assignment": [e[2] for e in edges],
         "edges_foldAngle": [e[3] if len(e) > 3 else {"V": 180, "M": -180}.get(e[2], 0) for e in edges],
     }
+    if faces:
+        fold["faces_vertices"] = faces
     with open(os.path.join(EXAMPLES, name + ".fold"), "w", encoding="utf-8") as file:
         json.dump(fold, file, separators=(",", ":"))
         file.write("\n")
 
 
-def pleats(name, title, inner, outer, angle, columns, creases):
-    """creases: (place in columns, assignment). The outline overhangs the mesh a little, so that creases reach its rim."""
-    vertices, edges = [], []
-    inner, outer = 0.99 * inner, 1.01 * outer
-    for place in [0.0, *(c[0] for c in creases), float(columns)]:
-        phi = angle * place / columns
+def pleats(name, title, inner, outer, columns, creases):
+    """creases: (place in columns, assignment). The outline overhangs the mesh a little, so that creases reach its rims."""
+    vertices, edges, faces = [], [], []
+    inner, outer = 0.9 * inner, 1.1 * outer
+    for k, (place, assignment) in enumerate(creases):
+        phi = 2 * math.pi * place / columns
         vertices += [(r * math.cos(phi), r * math.sin(phi)) for r in (inner, outer)]
-    last = len(creases) + 1
-    for k in range(last):
-        edges += [(2 * k, 2 * k + 2, "B"), (2 * k + 1, 2 * k + 3, "B")]
-    edges += [(0, 1, "B"), (2 * last, 2 * last + 1, "B")]
-    edges += [(2 * k, 2 * k + 1, creases[k - 1][1]) for k in range(1, last)]
-    write(name, title, vertices, edges)
+        following = 2 * ((k + 1) % len(creases))
+        edges += [(2 * k, following, "B"), (2 * k + 1, following + 1, "B"), (2 * k, 2 * k + 1, assignment)]
+        faces.append([2 * k, 2 * k + 1, following + 1, following])
+    write(name, title, vertices, edges, faces)
 
 
 def knife_creases(columns):
@@ -48,7 +49,7 @@ def knife_creases(columns):
 
 
 def box_creases(columns, pleats_count):
-    """Four folds a pleat: forth, back behind, forth, back again; the last fold would lie on the seam."""
+    """Four folds a pleat: forth, back behind, forth, back again; the last fold is the seam, on a line of nodes."""
     width = columns / pleats_count
     creases = []
     for p in range(pleats_count):
@@ -56,7 +57,8 @@ def box_creases(columns, pleats_count):
             place = (p + part) * width
             column = math.floor(place)
             creases.append((column + min(max(place - column, 0.25), 0.75), kind))
-    return creases[:-1]
+    creases[-1] = (columns, "V")
+    return creases
 
 
 def paper_plane():
@@ -74,6 +76,5 @@ def paper_plane():
 
 if __name__ == "__main__":
     paper_plane()
-    turn = math.radians(350)
-    pleats("knife_pleats", "knife pleats", 0.28, 0.78, turn, 150, knife_creases(150))
-    pleats("box_pleats", "box pleats", 0.28, 0.78, turn, 300, box_creases(300, 35))
+    pleats("knife_pleats", "knife pleats", 0.28, 0.78, 150, knife_creases(150))
+    pleats("box_pleats", "box pleats", 0.28, 0.78, 300, box_creases(300, 35))

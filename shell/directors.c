@@ -354,32 +354,28 @@ void ruga_directors_solve(ruga_directors* d, const double* right, double* x) {
     }
 }
 
-void ruga_directors_settle(ruga_directors* d, const double* angle, double* moment) {
+// moment [hinges] = of the triangles beside each: the second's less the first's, or, `weighed`, their mean.
+static void sum_moments(ruga_directors* d, const double* angle, bool weighed, double* moment) {
     double of[3];
+    memset(moment, 0, (size_t)d->hinge_count * sizeof *moment);
+    set_leans(d, angle);
+    for (int f = 0; f < d->triangle_count; f++) {
+        triangle_moments(d, f, of);
+        for (int i = 0; i < 3; i++) {
+            int h = d->triangle_hinge[f][i];
+            if (h >= 0) {
+                int side = d->hinge_triangle[h][0] != f;
+                moment[h] += (weighed ? d->weight[h][side] : 2 * side - 1) * of[i];
+            }
+        }
+    }
+}
+
+void ruga_directors_settle(ruga_directors* d, const double* angle, double* moment) {
     memset(d->rotation, 0, (size_t)d->hinge_count * sizeof *d->rotation);
-    memset(moment, 0, (size_t)d->hinge_count * sizeof *moment);
-    set_leans(d, angle);
-    for (int f = 0; f < d->triangle_count; f++) {
-        triangle_moments(d, f, of);
-        for (int i = 0; i < 3; i++) {
-            int h = d->triangle_hinge[f][i];
-            if (h >= 0) {
-                moment[h] -= d->hinge_triangle[h][0] == f ? of[i] : -of[i];
-            }
-        }
-    }
+    sum_moments(d, angle, false, moment);
     ruga_directors_solve(d, moment, d->rotation);
-    memset(moment, 0, (size_t)d->hinge_count * sizeof *moment);
-    set_leans(d, angle);
-    for (int f = 0; f < d->triangle_count; f++) {
-        triangle_moments(d, f, of);
-        for (int i = 0; i < 3; i++) {
-            int h = d->triangle_hinge[f][i];
-            if (h >= 0) {
-                moment[h] += d->weight[h][d->hinge_triangle[h][0] != f] * of[i];
-            }
-        }
-    }
+    sum_moments(d, angle, true, moment);
 }
 
 // Adds the part of edge `h`'s row that comes from triangle g; row: second derivatives by f_e and g's a.

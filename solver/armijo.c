@@ -24,12 +24,13 @@ static void accept(ruga_skin* skin, double* x, double* gradient) {
     ruga_skin_follow(skin, x);
 }
 
-// Near the minimum the energy's change drowns in round-off: there the slope decides.
-static bool decreases(double energy, double start, double slope, double b, double new_slope) {
+// Near the minimum the energy's change drowns in round-off: there the slope decides. An energy that vanishes at the
+// minimum, as of hinges at their rest angles, has the round-off of positions times forces and not of itself.
+static bool decreases(double energy, double start, double slope, double b, double new_slope, double round_off) {
     if (energy <= start + 1e-4 * b * slope) {
         return true;
     }
-    return fabs(energy - start) < 1e-11 * fabs(start) && fabs(new_slope) < 0.9 * fabs(slope);
+    return fabs(energy - start) < fmax(1e-11 * fabs(start), round_off) && fabs(new_slope) < 0.9 * fabs(slope);
 }
 
 // The full step already bent down: go on doubling while the energy falls.
@@ -49,6 +50,7 @@ static ruga_status extend(ruga_skin* skin, const double* d, const double* x, dou
 ruga_status ruga_armijo_search(ruga_skin* skin, const double* d, double* x, ruga_skin_terms* terms,
                                double* gradient, double* step) {
     double slope = ruga_dot_product(skin->n, gradient, d), start = terms->total, b = 1;
+    double round_off = 0x1p-52 * skin->model->extent * terms->force_reference;
     *step = 0;
     if (!(slope < 0)) {
         return RUGA_OK;
@@ -57,7 +59,7 @@ ruga_status ruga_armijo_search(ruga_skin* skin, const double* d, double* x, ruga
         ruga_skin_terms trial;
         RUGA_TRY(evaluate(skin, x, d, b, &trial));
         double new_slope = ruga_dot_product(skin->n, skin->trial_gradient, d);
-        if (isfinite(trial.total) && decreases(trial.total, start, slope, b, new_slope)) {
+        if (isfinite(trial.total) && decreases(trial.total, start, slope, b, new_slope, round_off)) {
             if (b == 1 && new_slope < 0.9 * slope) {
                 RUGA_TRY(extend(skin, d, x, &b, &trial));
             }

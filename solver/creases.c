@@ -150,14 +150,6 @@ static ruga_status add_curves(int count, const ruga_crease_def* defs, const ruga
 
 // ---- pieces --------------------------------------------------------------------------------------------
 
-static double triangle_area(const ruga_raster* r, int f) {
-    const int* t = r->mesh.triangle + 3 * (size_t)f;
-    double n[3];
-    ruga_triangle_normal(r->mesh.position + 3 * (size_t)t[0], r->mesh.position + 3 * (size_t)t[1],
-                         r->mesh.position + 3 * (size_t)t[2], n);
-    return 0.5 * ruga_norm(n);
-}
-
 static ruga_status set_pieces(ruga_creases* c) {
     const ruga_cut* cut = &c->cut;
     RUGA_TRY(RUGA_NEW_ZERO(c->area, cut->node_count));
@@ -166,7 +158,7 @@ static ruga_status set_pieces(ruga_creases* c) {
     RUGA_TRY(RUGA_NEW(c->mass, cut->piece_count));
     for (int p = 0; p < cut->piece_count; p++) {
         const ruga_cut_piece* piece = &cut->piece[p];
-        double area = triangle_area(&c->raster, piece->triangle);
+        double area = ruga_mesh_triangle_area(&c->raster.mesh, piece->triangle);
         c->fraction[p] = fmax(piece->fraction, LEAST_FRACTION);
         for (int i = 0; i < 3; i++) {
             c->mass[p][i] = piece->fraction * piece->middle[i];
@@ -289,7 +281,7 @@ void ruga_creases_set_bending(ruga_creases* c, const ruga_shell_material* materi
         for (int side = 0; side < 2; side++) {
             int p = segment->piece[side];
             const ruga_cut_piece* piece = &c->cut.piece[p];
-            softness += piece->fraction * triangle_area(&c->raster, piece->triangle) /
+            softness += piece->fraction * ruga_mesh_triangle_area(&c->raster.mesh, piece->triangle) /
                         ruga_shell_material_bending(material, p);
         }
         c->whole[h] = segment->length / softness;

@@ -64,10 +64,8 @@ static ruga_status check_sheet(const ruga_mesh* mesh, const double min[3], const
            size = fmax(max[0] - min[0], max[1] - min[1]);
     bool up = max[2] - min[2] <= 1e-9 * size;
     for (int f = 0; f < mesh->triangle_count; f++) {
-        const int* t = &mesh->triangle[3 * (size_t)f];
         double n[3];
-        ruga_triangle_normal(&mesh->position[3 * (size_t)t[0]], &mesh->position[3 * (size_t)t[1]],
-                             &mesh->position[3 * (size_t)t[2]], n);
+        ruga_mesh_triangle_normal(mesh, f, n);
         area += 0.5 * n[2];
         up = up && n[2] > 0;
     }

@@ -10,7 +10,9 @@
 //   v = v' + dt/2 f(x)/m
 //   v += M^-1 W S^-1 (-W^T v)                     post-stabilisation
 // Without damping that is the leapfrog scheme on the space W^T x = 0: of second order, symplectic, exact in
-// free fall. (The paper's forward Euler is of first order at the same price.) With damping it is of first
+// free fall. (The paper's forward Euler is of first order at the same price.) Nothing but a kick stands then
+// between a post-stabilisation and the pre-stabilisation of the next step, of which it is a part, as both
+// project along the same impulses: only the last step of a frame has one. With damping the scheme is of first
 // order. Every part conserves momentum, and, where there is no gap, angular momentum: damping too, when its
 // iteration ends early, since M preconditions it and its steps are M^-1 times forces between nodes. A held
 // node moves as the drive says: infinitely heavy.
@@ -32,6 +34,7 @@
 static const double DAMPED = 1e-6;     // residual of the damping over the momentum, in the norm of M^-1
 static const double DIFFERENCE = 1e-6; // edges
 static const double EDGE_OF_STABILITY = 0.98;
+static const double MOST_STEPS = 1e7; // of a frame: a day and more
 
 enum { CHUNK = 1024, MOST_HALVINGS = 6, MOST_DAMPING = 200, FIRST_EFFORT = 80, EFFORT = 8 };
 
@@ -108,11 +111,7 @@ static ruga_status set_mass(ruga_dynamic* d) {
     double* triangle = NULL;
     RUGA_TRY(RUGA_NEW(triangle, r->mesh.triangle_count));
     for (int f = 0; f < r->mesh.triangle_count; f++) {
-        const int* t = r->mesh.triangle + 3 * (size_t)f;
-        double n[3];
-        ruga_triangle_normal(r->mesh.position + 3 * (size_t)t[0], r->mesh.position + 3 * (size_t)t[1],
-                             r->mesh.position + 3 * (size_t)t[2], n);
-        triangle[f] = skin->density * skin->thickness * 0.5 * ruga_norm(n);
+        triangle[f] = skin->density * skin->thickness * ruga_mesh_triangle_area(&r->mesh, f);
     }
     ruga_cut_masses(d->def.elastic.cut, triangle, 0, false, d->mass);
     ruga_release(triangle);
@@ -402,8 +401,27 @@ void ruga_dynamic_start(ruga_dynamic* d, double* x, double* v) {
     d->fresh = false;
 }
 
-void ruga_dynamic_step(ruga_dynamic* d, const ruga_dynamic_drive* drive, double time, double dt, double* x,
-                       double* v, ruga_dynamic_report* report) {
+// Whether a node outruns the whole by an edge in dt, or something is not finite.
+static bool is_wild(const ruga_dynamic* d, double dt, const double* v) {
+    double mean[3] = {0, 0, 0}, most = d->edge / dt, fastest = 0;
+    for (int n = 0; n < d->nodes; n++) {
+        ruga_add_scaled(d->mass[n], v + 3 * (size_t)n, mean);
+    }
+    for (int i = 0; i < 3; i++) {
+        mean[i] /= d->total_mass;
+    }
+    for (int n = 0; n < d->nodes; n++) {
+        double own[3];
+        ruga_subtract(v + 3 * (size_t)n, mean, own);
+        double square = ruga_dot(own, own);
+        fastest = square > fastest ? square : fastest;
+    }
+    return !(fastest < most * most) || !isfinite(mean[0] + mean[1] + mean[2]);
+}
+
+// Returns whether the step was wild. Where another one `follows`, what is not needed till then may be left.
+static bool step(ruga_dynamic* d, const ruga_dynamic_drive* drive, double time, double dt, bool follows,
+                 double* x, double* v, ruga_dynamic_report* report) {
     if (!d->fresh) {
         set_force(d, drive, time, x, &report->elastic);
     }
@@ -411,10 +429,19 @@ void ruga_dynamic_step(ruga_dynamic* d, const ruga_dynamic_drive* drive, double 
     move_held(d, drive, time + dt, dt, x, v);
     report->damping_products += damp(d, dt, x, v);
     stabilise(d, x, dt, v);
+    bool wild = is_wild(d, dt, v);
     add(d, dt, v, x);
     set_force(d, drive, time + dt, x, &report->elastic);
     kick(d, 0.5 * dt, d->force, v);
-    stabilise(d, NULL, 0, v);
+    if (!follows || d->def.damping > 0) {
+        stabilise(d, NULL, 0, v);
+    }
+    return wild;
+}
+
+void ruga_dynamic_step(ruga_dynamic* d, const ruga_dynamic_drive* drive, double time, double dt, double* x,
+                       double* v, ruga_dynamic_report* report) {
+    (void)step(d, drive, time, dt, false, x, v, report);
 }
 
 // ------------------------------------------------------------------------------- stability
@@ -456,32 +483,17 @@ double ruga_dynamic_limit(ruga_dynamic* d, const double* x, int effort) {
     return square > 0 ? 2 / sqrt(square) : INFINITY;
 }
 
-// Whether a node outruns the whole by an edge in dt, or something is not finite.
-static bool is_wild(const ruga_dynamic* d, double dt, const double* v) {
-    double mean[3] = {0, 0, 0}, most = d->edge / dt;
-    for (int n = 0; n < d->nodes; n++) {
-        ruga_add_scaled(d->mass[n] / d->total_mass, v + 3 * (size_t)n, mean);
-    }
-    for (int n = 0; n < d->nodes; n++) {
-        if (!(ruga_distance(v + 3 * (size_t)n, mean) < most)) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool try_steps(ruga_dynamic* d, const ruga_dynamic_drive* drive, double time, double duration,
                       int count, double* x, double* v, ruga_dynamic_report* report) {
     double dt = duration / count;
     d->fresh = false;
     for (int k = 0; k < count; k++) {
-        ruga_dynamic_step(d, drive, time + duration * k / count, dt, x, v, report);
-        if (is_wild(d, dt, v)) {
+        if (step(d, drive, time + duration * k / count, dt, k + 1 < count, x, v, report)) {
             return false;
         }
     }
     d->limit = ruga_dynamic_limit(d, x, EFFORT);
-    return dt < EDGE_OF_STABILITY * d->limit;
+    return dt < EDGE_OF_STABILITY * d->limit && !is_wild(d, dt, v);
 }
 
 ruga_status ruga_dynamic_advance(ruga_dynamic* d, const ruga_dynamic_drive* drive, double time,
@@ -492,7 +504,13 @@ ruga_status ruga_dynamic_advance(ruga_dynamic* d, const ruga_dynamic_drive* driv
         d->limit = ruga_dynamic_limit(d, x, FIRST_EFFORT);
     }
     double wanted = ceil(duration / (d->def.safety * d->limit));
-    int count = wanted < 1 ? 1 : wanted < 1e8 ? (int)wanted : 100000000;
+    if (!(wanted <= MOST_STEPS)) {
+        return ruga_fail(RUGA_BAD_INPUT,
+                         "a time.step of %.3g s takes %.2g steps of motion, since none longer than %.2g s is "
+                         "stable: use larger triangles, or a softer or denser skin",
+                         duration, wanted, d->limit);
+    }
+    int count = wanted < 1 ? 1 : (int)wanted;
     memcpy(d->old_x, x, size);
     memcpy(d->old_v, v, size);
     ruga_dynamic_save(d, d->old_memory);

@@ -7,9 +7,9 @@
 #include "core/memory.h"
 #include "core/progress.h"
 #include "core/vec3.h"
-#include "lattice/union_find.h"
 #include "mesh/doctor.h"
 #include "shell/shell.h"
+#include "solver/anchor.h"
 #include "solver/start.h"
 
 #include <math.h>
@@ -35,7 +35,7 @@ static ruga_status check_motion(const ruga_model_def* def) {
             return ruga_fail(RUGA_BAD_INPUT,
                              "start.fold: needs interior: none; a skin starts on its interior");
         }
-        bool started = start->cone != 0 || ruga_norm(start->velocity) > 0;
+        bool started = start->cone != 0 || ruga_norm(start->velocity) > 0 || ruga_norm(start->spin) > 0;
         for (int i = 0; i < def->crease_count; i++) {
             if (def->creases[i].start > 0) {
                 return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.motion: dynamic", i);
@@ -46,11 +46,9 @@ static ruga_status check_motion(const ruga_model_def* def) {
         }
         return s->model == RUGA_SKIN_SPRINGS
                    ? ruga_fail(RUGA_BAD_INPUT, "skin.model: springs needs motion: dynamic")
-               : started
-                   ? ruga_fail(
-                         RUGA_BAD_INPUT,
-                         "start: cone and velocity need skin.motion: dynamic; a static skin starts at rest")
-                   : RUGA_OK;
+               : started ? ruga_fail(RUGA_BAD_INPUT, "start: cone, velocity and spin need skin.motion: "
+                                                     "dynamic; a static skin starts at rest")
+                         : RUGA_OK;
     }
     if (def->has_interior) {
         trouble = "needs interior: none";
@@ -75,6 +73,8 @@ static ruga_status check_motion(const ruga_model_def* def) {
     RUGA_TRY(require(s->drag >= 0 && isfinite(s->drag), "skin.drag", s->drag, "0 or above"));
     RUGA_TRY(require(isfinite(ruga_norm(def->start.velocity)), "start.velocity",
                      ruga_norm(def->start.velocity), "finite"));
+    RUGA_TRY(
+        require(isfinite(ruga_norm(def->start.spin)), "start.spin", ruga_norm(def->start.spin), "finite"));
     return require(def->start.cone >= 0 && def->start.cone < 2 * RUGA_PI, "start.cone", def->start.cone,
                    "between 0 and a whole turn");
 }
@@ -175,7 +175,7 @@ static ruga_status check_mesh(const ruga_model* model) {
 
 static ruga_status copy_handles(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(RUGA_NEW_ZERO(model->handles, def->handle_count + 1));
-    model->handles[def->handle_count] = ruga_default_handle_def(); // of hold_in_space
+    model->handles[def->handle_count] = ruga_default_handle_def(); // of solver/anchor.c
     model->handle_count = def->handle_count;
     for (int i = 0; i < def->handle_count; i++) {
         ruga_handle_def* handle = &model->handles[i];
@@ -326,91 +326,6 @@ static void hold_selected(ruga_model* model, int h, int count, const int* select
     hold_pieces(model, h, in);
 }
 
-// The uncut triangle of a part that is nearest to the middle; any where all are cut.
-static int middle_triangle(const ruga_model* model, int* part, int root) {
-    double nearest = INFINITY;
-    int best = 0;
-    for (int p = 0; p < model->mesh.triangle_count; p++) {
-        const int* t = model->mesh.triangle + 3 * (size_t)p;
-        if (ruga_sets_find(part, t[0]) != root) {
-            continue;
-        }
-        double off[3] = {-model->center[0], -model->center[1], -model->center[2]};
-        for (int i = 0; i < 3; i++) {
-            ruga_add_scaled(1.0 / 3, model->mesh.position + 3 * (size_t)t[i], off);
-        }
-        double far = ruga_norm(off) + (model->creases->cut.piece[p].fraction < 1 ? model->extent : 0);
-        if (far < nearest) {
-            nearest = far;
-            best = p;
-        }
-    }
-    return best;
-}
-
-static int largest_component(const double v[3]) {
-    return fabs(v[0]) >= fabs(v[1]) && fabs(v[0]) >= fabs(v[2]) ? 0 : fabs(v[1]) >= fabs(v[2]) ? 1 : 2;
-}
-
-// Six components of a triangle: its first corner; of the second what is across the edge between them; of the
-// third the height.
-static void hold_in_space(ruga_model* model, int triangle) {
-    const int* t = model->mesh.triangle + 3 * (size_t)triangle;
-    const double* x[3];
-    double edge[3], normal[3];
-    for (int i = 0; i < 3; i++) {
-        x[i] = ruga_start_shape(model) + 3 * (size_t)t[i];
-    }
-    ruga_subtract(x[1], x[0], edge);
-    ruga_triangle_normal(x[0], x[1], x[2], normal);
-    int along = largest_component(edge), up = largest_component(normal);
-    for (int axis = 0; axis < 3; axis++) {
-        model->skin_handle[3 * (size_t)t[0] + (size_t)axis] = model->handle_count;
-        model->skin_handle[3 * (size_t)t[1] + (size_t)axis] = axis == along ? -1 : model->handle_count;
-        model->skin_handle[3 * (size_t)t[2] + (size_t)axis] = axis == up ? model->handle_count : -1;
-    }
-    model->any_skin_held = true;
-    model->parts_in_space++;
-}
-
-// A folding sheet that nothing holds would drift and turn, and so would each piece that cuts make of it: one
-// triangle of each is held, which takes no force but against loads.
-static ruga_status hold_loose_parts(ruga_model* model) {
-    ruga_status status = RUGA_OK;
-    const ruga_cut* cut = &model->creases->cut;
-    int nodes = model->mesh.vertex_count, *part = NULL;
-    bool* held = NULL;
-    RUGA_TRY_DONE(RUGA_NEW(part, nodes));
-    RUGA_TRY_DONE(RUGA_NEW_ZERO(held, nodes));
-    for (int n = 0; n < nodes; n++) {
-        part[n] = n;
-    }
-    for (int k = 0; k < 3 * model->mesh.triangle_count; k++) {
-        ruga_sets_unite(part, model->mesh.triangle[k - k % 3], model->mesh.triangle[k]);
-    }
-    for (int b = 0; b < cut->bound_count; b++) {
-        for (int k = 1; k < cut->bound[b].count; k++) {
-            ruga_sets_unite(part, cut->parent[cut->bound[b].first][0],
-                            cut->parent[cut->bound[b].first + k][0]);
-        }
-    }
-    for (int i = 0; i < 3 * nodes; i++) {
-        int root = ruga_sets_find(part, i / 3);
-        held[root] = held[root] || model->skin_handle[i] >= 0;
-    }
-    for (int p = 0; p < model->mesh.triangle_count; p++) {
-        int root = ruga_sets_find(part, model->mesh.triangle[3 * p]);
-        if (!held[root]) {
-            hold_in_space(model, middle_triangle(model, part, root));
-            held[root] = true;
-        }
-    }
-done:
-    ruga_release(part);
-    ruga_release(held);
-    return status;
-}
-
 // Which handle holds which component of the skin; the first one wins.
 static ruga_status build_skin_holds(ruga_model* model) {
     ruga_status status = RUGA_OK;
@@ -433,9 +348,6 @@ static ruga_status build_skin_holds(ruga_model* model) {
             goto done;
         }
         hold_selected(model, h, count, selected, in);
-    }
-    if (model->creases && !model->has_interior && model->skin.motion != RUGA_SKIN_DYNAMIC) {
-        RUGA_TRY_DONE(hold_loose_parts(model));
     }
 done:
     ruga_release(selected);
@@ -560,7 +472,7 @@ static ruga_status build_coupling(ruga_model* model) {
     if (model->edges < 3 && !model->solver.allow_coarse) {
         return ruga_fail(
             RUGA_BAD_INPUT,
-            "the mesh has %.2g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
+            "the mesh has %.3g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
             "least 3 are needed and 8 are good: remesh with edge %.3g m, or set solver.allow_coarse",
             model->edges, model->mean_edge, model->edges_wavelength, model->edges_wavelength / 8);
     }
@@ -576,9 +488,10 @@ static ruga_status build_coupling(ruga_model* model) {
 static ruga_status build_interior(const ruga_model_def* def, ruga_model* model) {
     RUGA_TRY(ruga_progress("building the lattice", 0));
     RUGA_TRY(ruga_lattice_create(model->sheet, &model->connectivity, &model->lattice_def, &model->lattice));
-    if (!ruga_model_is_prescribed(model)) {
-        RUGA_TRY(ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles,
-                                  &model->rows));
+    RUGA_TRY(
+        ruga_rows_create(&model->lattice, model->sheet, model->handle_count, model->handles, &model->rows));
+    if (ruga_model_is_prescribed(model)) { // only to see that each region is somewhere
+        ruga_rows_clear(&model->rows);
     }
     if (model->creases) {
         RUGA_TRY(ruga_lattice_copy_vertices(&model->lattice, model->mesh.vertex_count,
@@ -652,6 +565,9 @@ ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
         }
     } else {
         model->solves_skin = model->skin.motion != RUGA_SKIN_DYNAMIC;
+        if (model->skin.motion == RUGA_SKIN_STATIC || (model->solves_skin && model->creases)) {
+            RUGA_TRY_DONE(ruga_model_anchor(model));
+        }
     }
     model->seam = model->clusters.count;
     if (model->creases) {

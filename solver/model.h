@@ -70,7 +70,6 @@ struct ruga_model {
     double* vertex_area;        // [V] m^2, rest
     int* skin_handle;           // [V][3] the handle that holds this component of the skin; -1 = free
     bool any_skin_held;
-    int parts_in_space; // pieces of a creased sheet that no handle holds
     bool solves_skin; // false: x = B q, or the dense volume's
     ruga_dense dense; // skin.model: volume; no nodes otherwise
 };

@@ -107,7 +107,7 @@ done:
 
 // ---- start ---------------------------------------------------------------------------------------------
 
-// Rolled copies of one place may part a little: brought together, held ones too.
+// Brings rolled copies together, held ones too.
 static ruga_status close_gaps(const ruga_moving* m, double* x) {
     ruga_status status = RUGA_OK;
     ruga_stitch* stitch = NULL;
@@ -144,7 +144,9 @@ ruga_status ruga_moving_start(ruga_moving* m, double* x) {
         RUGA_TRY(close_gaps(m, x));
     }
     for (int i = 0; i < 3 * m->nodes; i++) {
-        m->velocity[i] = m->model->skin_handle[i] >= 0 ? 0 : start->velocity[i % 3];
+        double turn[3];
+        ruga_cross(start->spin, x + 3 * (size_t)(i / 3), turn);
+        m->velocity[i] = m->model->skin_handle[i] >= 0 ? 0 : start->velocity[i % 3] + turn[i % 3];
     }
     ruga_dynamic_start(m->dynamic, x, m->velocity);
     take_angles(m);
@@ -245,6 +247,14 @@ ruga_status ruga_moving_step(ruga_moving* m, double time, double* x, ruga_report
     report->linear_iterations = done.damping_products;
     put_energies(m, time + m->model->step, x, &done.elastic, report);
     return RUGA_OK;
+}
+
+ruga_dynamic* ruga_moving_dynamic(ruga_moving* moving) {
+    return moving->dynamic;
+}
+
+const double* ruga_moving_velocity(const ruga_moving* moving) {
+    return moving->velocity;
 }
 
 // ---- restart -------------------------------------------------------------------------------------------

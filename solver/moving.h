@@ -21,6 +21,9 @@ ruga_status ruga_moving_step(ruga_moving* moving, double time, double* x, ruga_r
 // Energies as they stand at x and `time`.
 void ruga_moving_measure(ruga_moving* moving, double time, const double* x, ruga_report* report);
 
+ruga_dynamic* ruga_moving_dynamic(ruga_moving* moving);
+const double* ruga_moving_velocity(const ruga_moving* moving); // [nodes][3] m/s
+
 // Everything besides x and the hinges that the next frame depends on: velocities among them.
 int ruga_moving_restart_size(const ruga_model* model);
 void ruga_moving_save(const ruga_moving* moving, double* restart);

@@ -100,7 +100,7 @@ static ruga_status iterate(ruga_skin* skin, memory* m, double* x, double* gradie
 static ruga_status renew_factor(ruga_skin* skin, const double* x, memory* m) {
     *m = (memory){.gamma = 1, .newest = -1};
     if (skin->proximal > 3 * ruga_skin_shift_unit(skin->model)) {
-        RUGA_TRY(ruga_skin_factor(skin, x, 0, 0));
+        RUGA_TRY(skin->single_serves ? ruga_skin_factor_single(skin, x, 0) : ruga_skin_factor(skin, x, 0, 0));
         if (skin->factor_right) {
             return RUGA_OK;
         }
@@ -140,7 +140,8 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
         // A first step that is far too long or hardly taken: the old factor is of no use here.
         bool useless = score == 0 && (move > 2 * skin->model->skin.thickness || step < 0.2) && failures == 0;
         score = useless || step == 0 ? REFRESH : score + 1 + (step < 0.35);
-        failures = step == 0 ? failures + 1 : 0;
+        failures = step * move <= 0x1p-52 * skin->model->extent ? failures + 1 : 0;
+        skin->single_serves = skin->single_serves && failures == 0;
         if (failures > 3) {
             return RUGA_OK;
         }

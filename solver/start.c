@@ -18,6 +18,7 @@
 #include <string.h>
 
 static const double MISFIT = 1e-9; // edges
+static const double ROLLED = 0.25; // edges: rolled copies of one place part a little
 
 // Area, and means of rest and folded places over the material.
 static double find_means(const ruga_mesh* rest, const double* y, double mean[2][3]) {
@@ -25,10 +26,7 @@ static double find_means(const ruga_mesh* rest, const double* y, double mean[2][
     memset(mean, 0, 2 * sizeof *mean);
     for (int f = 0; f < rest->triangle_count; f++) {
         const int* t = rest->triangle + 3 * (size_t)f;
-        double n[3];
-        ruga_triangle_normal(rest->position + 3 * (size_t)t[0], rest->position + 3 * (size_t)t[1],
-                             rest->position + 3 * (size_t)t[2], n);
-        double part = 0.5 * ruga_norm(n);
+        double part = ruga_mesh_triangle_area(rest, f);
         area += part;
         for (int i = 0; i < 3; i++) {
             ruga_add_scaled(part / 3, rest->position + 3 * (size_t)t[i], mean[0]);
@@ -46,9 +44,7 @@ static void nearest_rotation(const ruga_mesh* rest, const double* y, const doubl
     double f[9] = {0}, u[9], s[3], v[9];
     for (int k = 0; k < rest->triangle_count; k++) {
         const int* t = rest->triangle + 3 * (size_t)k;
-        double n[3], d[2][4][3] = {{{0}}}; // of each corner, and their sum
-        ruga_triangle_normal(rest->position + 3 * (size_t)t[0], rest->position + 3 * (size_t)t[1],
-                             rest->position + 3 * (size_t)t[2], n);
+        double area = ruga_mesh_triangle_area(rest, k), d[2][4][3] = {{{0}}}; // of each corner, and their sum
         for (int i = 0; i < 3; i++) {
             ruga_subtract(rest->position + 3 * (size_t)t[i], mean[0], d[0][i]);
             ruga_subtract(y + 3 * (size_t)t[i], mean[1], d[1][i]);
@@ -57,7 +53,7 @@ static void nearest_rotation(const ruga_mesh* rest, const double* y, const doubl
         }
         for (int i = 0; i < 4; i++) {
             for (int e = 0; e < 9; e++) {
-                f[e] += ruga_norm(n) / 24 * d[0][i][e / 3] * d[1][i][e % 3];
+                f[e] += area / 12 * d[0][i][e / 3] * d[1][i][e % 3];
             }
         }
     }
@@ -102,7 +98,8 @@ static ruga_status fold(const ruga_model* model, double* x) {
     for (int h = 0; h < creases->segment_count; h++) {
         turn[creases->segment[h]] = turn_of(model, h);
     }
-    ruga_status status = ruga_cut_fold(&creases->raster, &creases->cut, turn, MISFIT * model->mean_edge, x);
+    double cone = model->start.cone, misfit = (cone > 0 ? ROLLED : MISFIT) * model->mean_edge;
+    ruga_status status = ruga_cut_fold(&creases->raster, &creases->cut, turn, cone, misfit, x);
     ruga_release(turn);
     return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "start.fold") : status;
 }
@@ -118,12 +115,10 @@ ruga_status ruga_start_create(ruga_model* model) {
     memcpy(model->started, model->mesh.position, n * sizeof *model->started);
     if (folded) {
         RUGA_TRY(fold(model, model->started));
-    }
-    if (start->cone > 0) {
+    } else {
         ruga_roll_cone(model->mesh.vertex_count, start->cone, model->started);
-        return RUGA_OK;
     }
-    return lay(model, model->started);
+    return start->cone > 0 ? RUGA_OK : lay(model, model->started);
 }
 
 const double* ruga_start_shape(const ruga_model* model) {

@@ -298,12 +298,10 @@ static int count_substeps(ruga_state* state, const double* from, const double* t
     job.position = to;
     ruga_parallel_for(mesh->triangle_count, 4096, triangle_strains, &job);
     for (int f = 0; f < mesh->triangle_count; f++) {
-        const int* t = mesh->triangle + 3 * (size_t)f;
         double critical = local ? local[f] : model->critical_strain;
-        double parts = triangle_parts(before[f], state->strain[f], critical), normal[3];
-        ruga_triangle_normal(mesh->position + 3 * (size_t)t[0], mesh->position + 3 * (size_t)t[1],
-                             mesh->position + 3 * (size_t)t[2], normal);
-        double area = 0.5 * ruga_norm(normal) * (model->creases ? model->creases->cut.piece[f].fraction : 1);
+        double parts = triangle_parts(before[f], state->strain[f], critical);
+        double area =
+            ruga_mesh_triangle_area(mesh, f) * (model->creases ? model->creases->cut.piece[f].fraction : 1);
         area_of_parts[(int)fmin(ceil(fmax(parts, 1) - 1e-9), MAX_SUBSTEPS)] += area;
         total += area;
     }

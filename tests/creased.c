@@ -16,7 +16,9 @@
 #include "tests/creased.h"
 
 #include "core/memory.h"
+#include "core/sparse.h"
 #include "core/vec3.h"
+#include "crease/cloth.h"
 #include "shell/membrane.h"
 #include "solver/linear.h"
 
@@ -85,14 +87,6 @@ const double* ruga_creased_angles(const ruga_creased* creased) {
 
 // ------------------------------------------------------------------------------- set-up
 
-static double triangle_area(const ruga_raster* r, int f) {
-    const int* t = r->mesh.triangle + 3 * (size_t)f;
-    double n[3];
-    ruga_triangle_normal(r->mesh.position + 3 * (size_t)t[0], r->mesh.position + 3 * (size_t)t[1],
-                         r->mesh.position + 3 * (size_t)t[2], n);
-    return 0.5 * ruga_norm(n);
-}
-
 static ruga_status set_membrane(ruga_creased* c) {
     const ruga_raster* r = c->def.raster;
     const ruga_cut* cut = c->def.cut;
@@ -115,45 +109,19 @@ static ruga_status set_membrane(ruga_creased* c) {
     return RUGA_OK;
 }
 
-// A part of a mesh edge between two pieces that are one there, as a hinge of unit length.
-static void set_bend(ruga_creased* c, const ruga_bend* bend, int at) {
-    const ruga_raster* r = c->def.raster;
-    const int* ends = r->edges.edge[bend->edge];
-    ruga_hinge* h = &c->hinge[at];
-    double area = 0, length;
-    *h = (ruga_hinge){.length = 1, .curve = -1};
-    for (int side = 0; side < 2; side++) {
-        const ruga_cut_piece* piece = &c->def.cut->piece[bend->piece[side]];
-        memcpy(h->node + 3 * side, piece->node, sizeof piece->node);
-        area += triangle_area(r, piece->triangle);
-        for (int i = 0; i < 3; i++) {
-            int v = c->def.cut->source[piece->node[i]];
-            h->weight[v == ends[0]   ? 0
-                      : v == ends[1] ? 1
-                                     : 2 + side][3 * side + i] = v == ends[0] || v == ends[1] ? 0.5 : 1;
-        }
-    }
-    length = ruga_distance(r->mesh.position + 3 * (size_t)ends[0], r->mesh.position + 3 * (size_t)ends[1]);
-    c->stiffness[at] = bend->fraction * length * length / area;
-}
-
+// The segments, then the bends as hinges of unit length.
 static void set_hinges(ruga_creased* c) {
     const ruga_raster* r = c->def.raster;
     const ruga_cut* cut = c->def.cut;
     const ruga_skin_def* skin = &c->def.skin;
     double rigidity = skin->young * pow(skin->thickness, 3) / (12 * (1 - skin->poisson * skin->poisson));
+    double *bend = c->stiffness + cut->segment_count, *chord = c->stiffness;
     ruga_hinges_make(r, cut, c->hinge);
-    for (int s = 0; s < cut->segment_count; s++) {
-        const ruga_segment* segment = &cut->segment[s];
-        const ruga_cut_piece *a = &cut->piece[segment->piece[0]], *b = &cut->piece[segment->piece[1]];
-        double area =
-            a->fraction * triangle_area(r, a->triangle) + b->fraction * triangle_area(r, b->triangle);
-        c->stiffness[s] = segment->curve >= 0 ? c->def.stiffness[s] : rigidity * segment->length / area;
-    }
-    for (int b = 0; b < cut->bend_count; b++) {
-        int at = cut->segment_count + b;
-        set_bend(c, &cut->bend[b], at);
-        c->stiffness[at] *= rigidity;
+    ruga_bends_make(r, cut, c->hinge + cut->segment_count);
+    ruga_bend_stiffness(r, cut, bend, chord);
+    for (int h = 0; h < c->hinge_count; h++) {
+        c->stiffness[h] =
+            c->hinge[h].curve >= 0 ? c->def.stiffness[h] : rigidity * c->stiffness[h] / c->hinge[h].length;
     }
     double* rest = c->trial; // the mesh may be curved at rest
     ruga_cut_rest(r, cut, rest);
@@ -167,7 +135,7 @@ static ruga_status set_mass(ruga_creased* c) {
     double* triangle = NULL;
     RUGA_TRY(RUGA_NEW(triangle, r->mesh.triangle_count));
     for (int f = 0; f < r->mesh.triangle_count; f++) {
-        triangle[f] = c->def.skin.density * c->def.skin.thickness * triangle_area(r, f);
+        triangle[f] = c->def.skin.density * c->def.skin.thickness * ruga_mesh_triangle_area(&r->mesh, f);
     }
     ruga_cut_masses(c->def.cut, triangle, 0, true, c->mass);
     ruga_release(triangle);
@@ -316,13 +284,29 @@ static void add_membrane(ruga_creased* c, const double* x, double clamp, bool se
     }
 }
 
+// Elements beside a hinge may share nodes.
+static void add_hinge_hessian(ruga_creased* c, const ruga_hinge* hinge,
+                              const double hessian[RUGA_HINGE_UNKNOWNS][RUGA_HINGE_UNKNOWNS]) {
+    for (int b = 0; b < RUGA_HINGE_UNKNOWNS; b++) {
+        int column = 3 * hinge->node[b / 3] + b % 3;
+        for (int a = 0; a < RUGA_HINGE_UNKNOWNS; a++) {
+            int row = 3 * hinge->node[a / 3] + a % 3;
+            if (row >= column) {
+                c->pattern.value[ruga_sparse_find(&c->pattern, row, column)] += hessian[a][b];
+            }
+        }
+    }
+}
+
 static void add_hinges(ruga_creased* c, const double* x, double clamp, bool second, energies* e) {
     for (int h = 0; h < c->hinge_count; h++) {
-        double gradient[RUGA_HINGE_NODES][3];
+        double gradient[RUGA_HINGE_NODES][3], hessian[RUGA_HINGE_UNKNOWNS][RUGA_HINGE_UNKNOWNS];
         const ruga_hinge* hinge = &c->hinge[h];
-        double energy = ruga_hinges_energy(1, hinge, &c->stiffness[h], &c->rest[h], x, &c->near[h], clamp,
-                                           NULL, &c->pattern, second ? c->pattern.value : NULL);
-        (void)ruga_hinge_energy(hinge, c->stiffness[h], c->rest[h], x, &c->near[h], clamp, gradient, NULL);
+        double energy = ruga_hinge_energy(hinge, c->stiffness[h], c->rest[h], x, &c->near[h], clamp, gradient,
+                                          second ? hessian : NULL);
+        if (second) {
+            add_hinge_hessian(c, hinge, (const double(*)[RUGA_HINGE_UNKNOWNS])hessian);
+        }
         c->trial_near[h] = ruga_hinge_measure(hinge, x, &c->near[h], NULL);
         *(h < c->def.cut->segment_count && hinge->curve >= 0 ? &e->hinge : &e->bending) += energy;
         for (int a = 0; a < RUGA_HINGE_NODES; a++) {

@@ -26,6 +26,23 @@ except ImportError:
 RUGA, BUILD, SOURCE = (os.path.abspath(path) for path in sys.argv[1:4])
 
 # The smallest sheet that wrinkles: 9 edges per wavelength, 10 frames of about 50 ms.
+# In motion, with creases that yield and one that comes later.
+MOVING = """\
+mesh: {make: {shape: sheet, size: [40 cm, 30 cm], cells: [12, 9], pattern: diagonal}}
+skin: {model: springs, motion: dynamic, thickness: 1 mm, young: 0.5 MPa, density: 300 kg/m^3, damping: 0.1 ms}
+interior: none
+creases:
+  - curve: {polyline: [[-0.5 m, 0.01 m, 0 m], [0.5 m, -0.013 m, 0 m]]}
+    hinge: {stiffness: 1 mN, rest: 60 deg, yield: 10 deg, rate: 5 1/s, hardening: 0.1}
+  - curve: {polyline: [[-0.19 m, -0.5 m, 0 m], [-0.199 m, 0.5 m, 0 m]]}
+    hinge: {stiffness: 2 mN, rest: 90 deg, yield: 30 deg}
+    start: 0.25 s
+time: {step: 40 ms, frames: 12}
+gravity: [0, 0, -9.81]
+handles:
+  - {region: {box: [[0.19, -1, -1], [1, 1, 1]]}, move: {translate: [0, 0, 5 cm]}, during: [0 s, 0.2 s]}
+"""
+
 SCENE = """\
 mesh:       {make: {shape: sheet, size: [14 cm, 4 cm], edge: 4.2 mm}}
 skin:       {thickness: 2 mm, young: 40 MPa}
@@ -264,6 +281,9 @@ class Scenes(Case):
         stronger = self.json("explain", self.scene, "--strain", "10%")
         self.assertGreater(stronger["amplitude"], facts["amplitude"])
         self.assertRegex(self.ruga("explain", self.scene).stdout, r"skin.density +900 kg/m\^3 +\(default\)")
+        cloth = self.write("cloth.yaml", "mesh: {make: {shape: sheet, size: [20 cm, 20 cm]}}\ninterior: none\n"
+                           "skin: {motion: dynamic}\n")
+        self.assertGreater(self.json("explain", cloth)["seconds"], 0)
 
     def test_a_coarse_mesh_is_warned_of_and_then_refused_but_explained(self):
         coarse = ("--set", "mesh.make.edge=7 mm")
@@ -274,6 +294,18 @@ class Scenes(Case):
         self.assertFalse(facts["ok"])
         self.refused("run", self.scene, "-o", "a.h5", *worse, saying="edges per w")
         self.assertFalse(os.path.exists(self.path("a.h5")))
+
+        coarse = self.json("explain", self.scene, *coarse)["warnings"]
+        self.assertEqual(len(coarse), 1)
+        self.assertIn("edges per wavelength", coarse[0])
+
+    def test_what_only_the_model_refuses_has_its_line_too(self):
+        scene = self.write("far.yaml", SCENE + "handles:\n  - {region: {sphere: {center: [9, 9, 9], radius: 1 cm}}, fix: true}\n")
+        for command in (("explain", scene), ("run", scene, "-o", "a.h5")):
+            self.refused(*command, saying=r"far\.yaml:8: handles\.0: the region \(sphere\) selects no material")
+        self.refused("explain", self.scene, "--set", "prescribed.1.stretch=[0, 1, 1]", saying="above 0")
+        self.ruga("explain", self.scene, "--set", "prescribed.1={time: 1 s, matrix: [[0, 0, 0], [0, 1, 0], [0, 0, 1]]}")
+        self.refused("explain", self.scene, "--strain", "105%", saying="--strain")
 
     def test_broken_scenes_end_with_a_sentence(self):
         bad = sorted(glob.glob(os.path.join(SOURCE, "tests", "scenes", "bad", "*.yaml")))
@@ -338,6 +370,29 @@ class Runs(Case):
         self.refused("measure", "a.h5", "--curve", "none/c.csv", saying="folder")
         self.refused("export", "a.h5", "--unit", "kg", "-o", "a.obj", saying="--unit")
 
+    @unittest.skipUnless(h5py, "needs h5py")
+    def test_the_result_names_vertices_of_the_file_and_the_libraries(self):
+        # A square in two groups, of which one is taken and remeshed: two of its corners are vertices 1 and 2 of the file.
+        self.write("two.obj", "v 0 0 0\nv 20 0 0\nv 20 4 0\nv 0 4 0\nv 10 0 0\nv 10 4 0\n"
+                   "g left\nf 1 5 6 4\ng right\nf 5 2 3 6\n")
+        scene = self.write("two.yaml", """\
+mesh:       {file: two.obj, unit: cm, groups: [right], remesh: {edge: 4 mm}}
+interior:   {young: 0.5 MPa}
+lattice:    {fill: box}
+prescribed: [{time: 0 s}]
+time:       {frames: 1}
+""")
+        self.ruga("run", scene, "-o", "two.h5")
+        with h5py.File(self.path("two.h5"), "r") as file:
+            source, rest = file["mesh/source_vertex"][:], file["mesh/rest"][:]
+            versions = file.attrs["library_versions"]
+        self.assertEqual(sorted(source[source >= 0]), [1, 2, 4, 5])
+        self.assertTrue((abs(rest[source == 2] - [0.2, 0.04, 0]) < 1e-12).all())
+        for name in ("HDF5 1.", "CHOLMOD", "Belos", "OpenVDB", "CGAL"):
+            self.assertIn(name, versions)
+        self.assertIsNone(self.json("measure", "two.h5")["volume"])  # nothing is enclosed
+        self.assertRegex(self.ruga("measure", "two.h5").stdout, r"volume +-\n")
+
     def test_existing_results_and_resume(self):
         whole = self.run_scene("whole.h5")
         part = self.run_scene("part.h5", "--frames", 4)
@@ -401,6 +456,62 @@ class Runs(Case):
         scene = self.write("coupled.yaml", COUPLED)
         self.ruga("run", scene, "-o", "coupled.h5")
         self.kill_and_resume(scene, 10, self.path("coupled.h5"))
+
+    def test_creases_along_the_ridges_of_a_result(self):
+        bent = self.write("bent.yaml", """\
+mesh:     {make: {shape: sheet, size: [20 cm, 12 cm], edge: 8 mm}}
+skin:     {thickness: 0.3 mm, young: 1 GPa}
+interior: none
+handles:
+  - {region: {plane: {center: [-9.9 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}
+  - {region: {plane: {center: [9.9 cm, 0, 0], normal: [1, 0, 0]}}, move: {translate: [-3 cm, 0, 1 cm]}, during: [0 s, 60 ms]}
+time:     {frames: 3}
+""")
+        self.ruga("run", bent, "-o", "bent.h5")
+        ridge = "creases=[{curve: {stress: {result: bent.h5, from: bending}}, hinge: {rest: assigned}}]"
+        facts = self.json("explain", bent, "--set", ridge, "--set", "mesh.make.edge=7 mm")  # other triangles
+        self.assertEqual(facts["creases"]["curves"], 1)
+        self.refused("explain", bent, "--set", ridge, "--set", "mesh.make={shape: pillow, size: 20 cm}", "--set",
+                     "handles=[]", saying=r"creases\.0\.curve: bent\.h5 has another surface at rest")
+
+    def test_a_shell_that_nothing_holds_stays_where_it_is_or_is_refused(self):
+        scene = self.write("free.yaml", """\
+mesh:     {make: {shape: sphere, size: 20 cm, edge: 2 cm}}
+skin:     {thickness: 1 mm, young: 1 MPa}
+interior: none
+handles:  [{region: all, press: -100 Pa}]
+time:     {frames: 1}
+""")
+        self.ruga("run", scene, "-o", "free.h5")  # exit status 0: a minimum, not a saddle for its rigid motions
+        # Radius R p R (1 - nu) / (2 E h) more, to first order.
+        volume = [self.json("measure", "free.h5", "--frame", k)["volume"] for k in (0, 1)]
+        self.assertAlmostEqual((volume[1] / volume[0]) ** (1 / 3) - 1, 0.0035, delta=2e-4)
+        self.ruga("run", scene, "-o", "free.h5", "--force", "--set", "handles=[]")
+        self.ruga("run", scene, "-o", "free.h5", "--force", "--set", "handles=[{region: all, fix: [z]}]")
+        self.ruga("run", scene, "-o", "free.h5", "--force", "--set", "handles=[{region: {vertices: [3]}, fix: true}]")
+        saying = "has no equilibrium"
+        self.refused("run", scene, "-o", "x.h5", "--set", "handles=[]", "--set", "gravity=[0, 0, -1]", saying=saying)
+        self.refused("explain", scene, "--set", "handles=[{region: all, force: [1 N, 0, 0]}]", saying=saying)
+        # Two balls, of which one is held.
+        self.ruga("make", "sphere", "--size", "20cm", "--edge", "4cm", "-o", "a.obj")
+        with open(self.path("a.obj"), encoding="utf-8") as file:
+            lines = [line.split() for line in file if line[:2] in ("v ", "f ")]
+        vertices = [line[1:] for line in lines if line[0] == "v"]
+        faces = [[int(word.split("/")[0]) for word in line[1:]] for line in lines if line[0] == "f"]
+        text = "".join(f"v {float(x) + dx} {y} {z}\n" for dx in (0, 1) for x, y, z in vertices)
+        text += "".join("f " + " ".join(str(v + k * len(vertices)) for v in face) + "\n" for k in (0, 1) for face in faces)
+        self.write("two.obj", text)
+        self.ruga("run", scene, "-o", "free.h5", "--force", "--set", "mesh={file: two.obj}", "--set",
+                  "handles=[{region: {sphere: {radius: 20 cm}}, fix: true}]")
+
+    def test_neither_kills_nor_threads_cost_a_bit_of_cloth_in_motion(self):
+        scene = self.write("moving.yaml", MOVING)
+        self.ruga("run", scene, "-o", "moving.h5", "--threads", 1)
+        self.ruga("run", scene, "-o", "threads.h5", "--threads", 2)
+        self.assert_same(self.path("moving.h5"), self.path("threads.h5"))
+        self.kill_and_resume(scene, 4, self.path("moving.h5"))
+        self.refused("run", scene, "-o", "wild.h5", "--quiet", "--set", "gravity=[0, 0, -1e9]",
+                     saying="cannot be stepped")
 
     def test_creases_from_a_pattern(self):
         self.write("cross.fold", CROSS)

@@ -61,10 +61,10 @@ static void panels_fold_rigidly_or_not_at_all(void** state) {
             turn[s] = m.c.cut.segment[s].curve >= 0 ? 2.4 : 0;
         }
         if (which == CROSS) {
-            assert_status(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 1e-9, m.x), RUGA_BAD_INPUT);
+            assert_status(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 0, 1e-9, m.x), RUGA_BAD_INPUT);
             assert_non_null(strstr(ruga_last_error(), "do not fit together"));
         } else {
-            assert_ok(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 1e-14, m.x));
+            assert_ok(ruga_cut_fold(&m.c.raster, &m.c.cut, turn, 0, 1e-14, m.x));
             ruga_hinges_make(&m.c.raster, &m.c.cut, hinge);
             for (int s = 0; s < segments; s++) {
                 assert_near(ruga_hinge_measure(&hinge[s], m.x, NULL, NULL), turn[s], 1e-12);
@@ -236,6 +236,39 @@ static void the_step_is_of_second_order_and_of_first_with_damping(void** state) 
         for (int k = 0; k < 3; k++) {
             free(at[k]);
         }
+    }
+}
+
+// Within a frame the undamped step leaves out a projection that the next one makes as well.
+static void a_frame_is_its_steps_one_by_one(void** state) {
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        motion m[2];
+        ruga_dynamic_report report = {0}, own = {0};
+        for (int k = 0; k < 2; k++) {
+            cut_sheet(&m[k], 4, CROSS, kind % 2);
+            choose_kind(&m[k], kind < 2 ? 0 : 3);
+            m[k].def.damping = kind % 2 ? 1e-3 : 0;
+            m[k].def.drag = 2;
+            m[k].def.gravity[2] = -9.81;
+            for (int n = 0; n < m[k].nodes; n++) {
+                hold(&m[k], n, m[k].x[3 * n] < 1e-9);
+            }
+            create_motion(&m[k]);
+            ruga_dynamic_start(m[k].dynamic, m[k].x, m[k].v);
+        }
+        assert_ok(ruga_dynamic_advance(m[0].dynamic, NULL, 0, 0.05, m[0].x, m[0].v, &report));
+        int count = report.substeps;
+        assert_true(count > 10 && report.halvings == 0);
+        for (int s = 0; s < count; s++) {
+            ruga_dynamic_step(m[1].dynamic, NULL, 0.05 * s / count, 0.05 / count, m[1].x, m[1].v, &own);
+        }
+        for (int i = 0; i < 3 * m[0].nodes; i++) {
+            assert_near(m[0].x[i], m[1].x[i], 1e-11 * EDGE);
+            assert_near(m[0].v[i], m[1].v[i], 1e-9);
+        }
+        clear_motion(&m[0]);
+        clear_motion(&m[1]);
     }
 }
 
@@ -485,6 +518,20 @@ static void a_blow_up_is_said_and_nothing_moves_on(void** state) {
     clear_motion(&m);
 }
 
+static void a_frame_of_too_many_steps_is_refused(void** state) {
+    (void)state;
+    motion m;
+    ruga_dynamic_report report;
+    cut_sheet(&m, 4, LINE, false);
+    choose_kind(&m, 0);
+    m.def.elastic.skin.density = 1e-14;
+    create_motion(&m);
+    ruga_dynamic_start(m.dynamic, m.x, m.v);
+    assert_status(ruga_dynamic_advance(m.dynamic, NULL, 0, 1, m.x, m.v, &report), RUGA_BAD_INPUT);
+    assert_non_null(strstr(ruga_last_error(), "a time.step of 1 s takes"));
+    clear_motion(&m);
+}
+
 // A crease that becomes a thousand times stiffer within a frame by its rest angle: the frame is taken anew.
 static void too_long_steps_are_halved(void** state) {
     (void)state;
@@ -584,12 +631,14 @@ int main(void) {
         cmocka_unit_test(momenta_are_conserved_in_free_flight),
         cmocka_unit_test(energy_does_not_drift_and_damping_only_takes_it),
         cmocka_unit_test(the_step_is_of_second_order_and_of_first_with_damping),
+        cmocka_unit_test(a_frame_is_its_steps_one_by_one),
         cmocka_unit_test(free_fall_is_exact),
         cmocka_unit_test(a_panel_on_its_crease_swings_as_a_pendulum),
         cmocka_unit_test(a_bar_and_a_drum_have_their_frequencies),
         cmocka_unit_test(a_crease_does_not_shorten_the_step_as_a_conforming_mesh_does),
         cmocka_unit_test(the_limit_is_where_steps_stop_being_stable),
         cmocka_unit_test(a_blow_up_is_said_and_nothing_moves_on),
+        cmocka_unit_test(a_frame_of_too_many_steps_is_refused),
         cmocka_unit_test(too_long_steps_are_halved),
         cmocka_unit_test(the_bits_depend_on_nothing),
         cmocka_unit_test(every_failed_allocation_is_a_status),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "core/parallel.h"
 #include "ruga/ruga.h"
@@ -578,17 +579,6 @@ static void impossible_materials_are_refused(void** state) {
     ruga_lattice_clear(&lattice);
 }
 
-static void* allocate_while_allowed(size_t size, void* context) {
-    int* allowed = context;
-    return (*allowed)-- > 0 ? aligned_alloc(64, (size + 63) / 64 * 64) : NULL;
-}
-
-static void release_block(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static ruga_status everything(const embedded* m, double* hessian) {
     ruga_elasticity* e = NULL;
     ruga_status status = ruga_elasticity_create(&m->lattice, YOUNG, POISSON, &m->vertices, &e);
@@ -615,8 +605,7 @@ static void any_failed_allocation_is_a_status_and_leaks_nothing(void** state) {
     ruga_status status = RUGA_NO_MEMORY;
     int k = 0;
     for (; status != RUGA_OK && k < 200; k++) {
-        int allowed = k;
-        ruga_set_allocator(allocate_while_allowed, release_block, &allowed);
+        let_allocations_fail_after(k);
         status = everything(&m, hessian);
         ruga_set_allocator(NULL, NULL, NULL);
         assert_true(status == RUGA_OK || status == RUGA_NO_MEMORY);

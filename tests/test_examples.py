@@ -66,6 +66,8 @@ class Examples(unittest.TestCase):
                     continue
                 self.assertEqual(done.returncode, 0, done.stderr)
                 facts = json.loads(done.stdout)
+                self.assertGreater(facts["memory_bytes"], 1e5, path)
+                self.assertGreater(facts["seconds_per_frame"], 1e-3, path)
                 self.assertNotIn("allow_coarse: true", read(path))
                 sets = coarser(facts)
                 done = ruga("run", path, "-o", os.path.join(folder, "result.h5"), "--frames", "1", "--threads", "1",

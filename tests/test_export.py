@@ -144,6 +144,11 @@ class Files(Case):
     def test_obj_and_ply_sequences_hold_the_frames_bit_by_bit(self):
         self.export("f_%02d.obj", "--unit", "m")
         self.export("f_%02d.ply", "--format", "ply", "--unit", "m")
+        self.export("said.obj", "--unit", "mm", "--up", "y", "--fps", "12.5", "--name", "my bag")
+        self.export("said.ply", "--unit", "mm", "--up", "y", "--fps", "12.5", "--name", "my bag")
+        for name in ("said.obj", "said.ply"):
+            head = self.bytes(name)[:400].decode(errors="replace")
+            self.assertIn("my bag, frame 3, t = 0.06 s, unit 0.001 m, y up, 12.5 frames per second", head)
         for k in range(FRAMES):
             lines = self.bytes(f"f_{k:02d}.obj").decode().split("\n")
             v = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
@@ -461,6 +466,23 @@ def read_png16(data):
     return np.array(rows, np.uint8).reshape(height, width, 3, 2).astype(int) @ [256, 1]
 
 
+def read_png_texts(data):
+    """The tEXt chunks; every chunk's check sum is looked at."""
+    at, texts = 8, {}
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        assert struct.unpack_from(">I", data, at + 8 + size)[0] == zlib.crc32(data[at + 4:at + 8 + size])
+        if kind == b"tEXt":
+            key, text = data[at + 8:at + 8 + size].split(b"\0")
+            texts[key.decode()] = text.decode()
+        at += size + 12
+    return texts
+
+
+def read_exr_scale(head):
+    return (*struct.unpack("<dd", head["valueScale"] + head["valueOffset"]), head["valueUnit"].decode())
+
+
 class Bake(Case):
     SIZE = 128
 
@@ -497,26 +519,40 @@ class Bake(Case):
         pixel, head = read_exr(self.bytes("d.exr"))
         np.testing.assert_allclose(pixel[rows, columns], d, atol=2e-8)
         self.assertIn(b"unit 1 m", head["comments"])
+        self.assertEqual(read_exr_scale(head), (1, 0, "m"))
         self.bake("d_cm.exr", "--half")
-        pixel, _ = read_exr(self.bytes("d_cm.exr"))
+        pixel, head = read_exr(self.bytes("d_cm.exr"))
+        self.assertEqual(read_exr_scale(head), (0.01, 0, "m"))
         np.testing.assert_allclose(pixel[rows, columns], 100 * d, rtol=1e-3, atol=1e-5)
         said = self.bake("d.png", "--range", "4 mm").stdout
         self.assertIn("-4 to 4 mm", said)
         self.assertRegex(said, r"normal alone leaves \d")
         pixel = read_png16(self.bytes("d.png"))
         np.testing.assert_allclose((pixel[rows, columns] / 65535 - 0.5) * 8e-3, d, atol=1e-7)
+        texts = read_png_texts(self.bytes("d.png"))
+        scale, offset = float(texts["valueScale"]), float(texts["valueOffset"])
+        self.assertEqual((scale, offset, texts["valueUnit"]), (8e-3, -4e-3, "m"))
+        np.testing.assert_allclose(offset + scale * pixel[rows, columns] / 65535, d, atol=1e-7)
+        self.bake("d_own.png")  # the range of the largest that occurs is known from the file alone
+        texts = read_png_texts(self.bytes("d_own.png"))
+        own = read_png16(self.bytes("d_own.png"))[rows, columns] / 65535
+        np.testing.assert_allclose(float(texts["valueOffset"]) + float(texts["valueScale"]) * own, d, atol=1e-7)
+        self.assertIn("displacement along tangent", texts["Comment"])
         border = pixel[0]  # far from any chart: no displacement
         np.testing.assert_array_equal(border, np.full_like(border, 32768))
 
     def test_normals_tension_and_occlusion(self):
         rows, columns, _ = self.wanted(self.rest)
         self.bake("n.png", "--map", "normal")
+        texts = read_png_texts(self.bytes("n.png"))
+        self.assertEqual((texts["valueScale"], texts["valueOffset"], texts["valueUnit"]), ("2", "-1", "1"))
         n = read_png16(self.bytes("n.png"))[rows, columns] / 65535 * 2 - 1
         np.testing.assert_allclose(np.linalg.norm(n, axis=1), 1, atol=1e-4)
         self.assertGreater(n[:, 2].min(), 0.5)
         self.assertGreater(np.ptp(n[:, 0]), 0.1)
         self.bake("t.exr", "--map", "tension")
-        t, _ = read_exr(self.bytes("t.exr"))
+        t, head = read_exr(self.bytes("t.exr"))
+        self.assertEqual(read_exr_scale(head), (1, 0, "1"))
         np.testing.assert_allclose(t[rows, columns], np.full((len(rows), 3), [0, -0.05, -0.05]), atol=1e-6)
         self.bake("a.exr", "--map", "ao", "--frame", "0", "--samples", "16")
         a, _ = read_exr(self.bytes("a.exr"))

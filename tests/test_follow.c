@@ -45,7 +45,7 @@ static const double times[3] = {0, 0.5, 2};
 
 static void start(small_scene* s, ruga_shape shape, int degree, mover* m) {
     *s = (small_scene){.length = 0};
-    scene_mesh(s, shape, 0.3, 0.12, 0.08, 0.012);
+    scene_mesh(s, shape, 0.3, 0.12, shape == RUGA_SHAPE_SHEET ? 0 : 0.08, 0.012);
     s->def.interior.motion = RUGA_INTERIOR_PRESCRIBED;
     s->def.lattice.degree = degree;
     s->def.lattice.fill = shape == RUGA_SHAPE_SHEET ? RUGA_FILL_BOX : RUGA_FILL_MESH;

@@ -1,61 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 #define _POSIX_C_SOURCE 200809L
-#include "tests/check.h"
-#include "tests/scarce_memory.h"
+#include "tests/files.h"
 
 #include "core/memory.h"
 #include "core/random.h"
 #include "core/vec3.h"
-#include "io/mesh_file.h"
 #include "io/triangulate.h"
 #include "mesh/connectivity.h"
 #include "mesh/make.h"
 
 #include <locale.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
-#include <unistd.h>
-
-static char folder[] = "ruga_mesh_file_XXXXXX";
-
-static int make_folder(void** state) {
-    (void)state;
-    return mkdtemp(folder) ? 0 : 1;
-}
-
-static int remove_folder(void** state) {
-    return rmdir(folder) | check_no_leak(state); // every test removes its files
-}
-
-// The path of a file in the test's folder; one at a time.
-static const char* in_folder(const char* name) {
-    static char path[256];
-    (void)snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
-static const char* write_bytes(const char* name, const void* data, size_t size) {
-    const char* path = in_folder(name);
-    FILE* file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(data, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
-    return path;
-}
-
-static ruga_status read_bytes(const char* name, const void* data, size_t size, ruga_mesh* mesh) {
-    const char* path = write_bytes(name, data, size);
-    ruga_status status = ruga_mesh_read(path, mesh);
-    assert_int_equal(unlink(path), 0);
-    return status;
-}
-
-static ruga_status read_text(const char* name, const char* text, ruga_mesh* mesh) {
-    return read_bytes(name, text, strlen(text), mesh);
-}
 
 static void assert_triangles(const ruga_mesh* mesh, int count, const int* wanted) {
     assert_int_equal(mesh->triangle_count, count);
@@ -247,19 +204,6 @@ static void ply_binary_of_both_byte_orders(void** state) {
     }
 }
 
-static void put32(char* at, uint32_t value) {
-    for (int i = 0; i < 4; i++) {
-        at[i] = (char)(value >> 8 * i & 0xff);
-    }
-}
-
-static void put_float(char* at, float value) {
-    uint32_t bits;
-    memcpy(&bits, &value, 4);
-    put32(at, bits);
-}
-
-// A tetrahedron as binary STL, its title being "solid ...": 84 + 4 * 50 bytes
 static size_t binary_stl(char file[512]) {
     static const float p[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     static const int t[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
@@ -329,169 +273,6 @@ static void off_headers_are_understood(void** state) {
         assert_int_equal(mesh.uv_count, i == 5 ? 4 : 0);
         assert_true(i != 5 || (mesh.uv[4] == 1 && mesh.uv[6] == 0 && mesh.uv[7] == 1));
         ruga_mesh_clear(&mesh);
-    }
-}
-
-// -------------------------------------------------------------------------------------------- glTF
-
-// 4 positions (0,0,0) (1,0,0) (0,1,0) (1,1,0), 4 uvs (the same x y), indices 0 1 2 3 as uint16: 88 bytes
-static size_t gltf_bytes(char data[88]) {
-    for (int v = 0; v < 4; v++) {
-        float x = (float)(v % 2), y = (float)(v / 2);
-        put_float(data + 12 * v, x);
-        put_float(data + 12 * v + 4, y);
-        put_float(data + 12 * v + 8, 0);
-        put_float(data + 48 + 8 * v, x);
-        put_float(data + 48 + 8 * v + 4, y);
-        data[80 + 2 * v] = (char)v;
-        data[80 + 2 * v + 1] = 0;
-    }
-    return 88;
-}
-
-static void encode_base64(const char* data, size_t size, char* text) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < size; i += 3) {
-        uint32_t bits = 0;
-        for (size_t k = 0; k < 3; k++) {
-            bits = bits << 8 | (i + k < size ? (unsigned char)data[i + k] : 0);
-        }
-        for (size_t k = 0; k < 4; k++) {
-            *text++ = i + k > size ? '=' : digits[bits >> (18 - 6 * k) & 63];
-        }
-    }
-    *text = '\0';
-}
-
-static const char gltf_body[] =
-    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":32},"
-    "{\"buffer\":0,\"byteOffset\":80,\"byteLength\":8}],"
-    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"
-    "{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"
-    "{\"bufferView\":2,\"componentType\":5123,\"count\":4,\"type\":\"SCALAR\"}],"
-    "\"meshes\":[{\"name\":\"strip\",\"primitives\":[{\"mode\":5,\"attributes\":{\"POSITION\":0,\"TEXCOORD_"
-    "0\":1},"
-    "\"indices\":2},{\"mode\":1,\"attributes\":{\"POSITION\":0}}]},"
-    "{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":6}]}],";
-static const char gltf_nodes[] =
-    "\"scene\":0,\"scenes\":[{\"nodes\":[0,3]}],\"nodes\":[{\"children\":[1,2],\"translation\":[10,0,0],"
-    "\"scale\":[2,2,2]},{\"mesh\":0,\"rotation\":[0,0,0.70710678118654757,0.70710678118654757]},"
-    "{\"mesh\":0,\"matrix\":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,5,0,1]},{\"mesh\":1}]";
-
-static void assert_gltf_scene(const ruga_mesh* mesh) {
-    // Instance one: x' = 10 + 2 (-y, x); two, mirrored: x' = 10 + 2 (-x, y + 5). The fan is flat: 0 1 2, 0
-    // 2 3.
-    assert_int_equal(mesh->vertex_count, 12);
-    assert_int_equal(mesh->triangle_count, 6);
-    assert_int_equal(mesh->group_count, 3);
-    assert_string_equal(mesh->group_name[0], "strip.0");
-    assert_string_equal(mesh->group_name[2], "mesh1");
-    const double one[3] = {10, 2, 0}, two[3] = {8, 10, 0};
-    assert_near(ruga_distance(mesh->position + 3, one), 0, 1e-12);
-    assert_near(ruga_distance(mesh->position + 15, two), 0, 1e-12);
-    for (int f = 0; f < 4; f++) {
-        double n[3];
-        const int* t = mesh->triangle + 3 * f;
-        ruga_triangle_normal(mesh->position + 3 * t[0], mesh->position + 3 * t[1], mesh->position + 3 * t[2],
-                             n);
-        assert_near(n[2], 4, 1e-12);
-    }
-    assert_int_equal(mesh->uv_triangle[0], 0);
-    assert_int_equal(mesh->uv_triangle[15], -1);
-    assert_near(mesh->uv[2 * mesh->uv_triangle[1]], 1, 0);
-}
-
-static void gltf_scene_from_uri_file_and_glb(void** state) {
-    (void)state;
-    char data[88], base64[128], text[4096], glb[4096], other[300];
-    size_t size = gltf_bytes(data);
-    encode_base64(data, size, base64);
-    ruga_mesh mesh;
-    (void)snprintf(text, sizeof text,
-                   "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":88,\"uri\":"
-                   "\"data:application/octet-stream;base64,%s\"}],%s%s}",
-                   base64, gltf_body, gltf_nodes);
-    assert_ok(read_text("a.gltf", text, &mesh));
-    assert_gltf_scene(&mesh);
-    ruga_mesh_clear(&mesh);
-
-    (void)snprintf(other, sizeof other, "%s", write_bytes("the buffer.bin", data, size));
-    (void)snprintf(
-        text, sizeof text,
-        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":88,\"uri\":\"the%%20buffer.bin\"}],"
-        "%s%s}",
-        gltf_body, gltf_nodes);
-    assert_ok(read_text("a.gltf", text, &mesh));
-    assert_int_equal(unlink(other), 0);
-    assert_gltf_scene(&mesh);
-    ruga_mesh_clear(&mesh);
-
-    int length = snprintf(text, sizeof text,
-                          "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":88}],%s%s}",
-                          gltf_body, gltf_nodes);
-    memcpy(glb, "glTF", 4);
-    put32(glb + 4, 2);
-    put32(glb + 8, (uint32_t)(28 + length + 88));
-    put32(glb + 12, (uint32_t)length);
-    memcpy(glb + 16, "JSON", 4);
-    memcpy(glb + 20, text, (size_t)length);
-    put32(glb + 20 + length, 88);
-    memcpy(glb + 24 + length, "BIN\0", 4);
-    memcpy(glb + 28 + length, data, 88);
-    assert_ok(read_bytes("a.glb", glb, (size_t)length + 28 + 88, &mesh));
-    assert_gltf_scene(&mesh);
-    ruga_mesh_clear(&mesh);
-    assert_status(read_bytes("a.glb", glb, (size_t)length + 28 + 80, &mesh), RUGA_BAD_INPUT);
-    assert_status(read_bytes("a.glb", glb, 15, &mesh), RUGA_BAD_INPUT);
-}
-
-static void gltf_that_cannot_be_read_says_why(void** state) {
-    (void)state;
-    static const struct {
-        const char* json;
-        const char* word;
-    } bad[] = {
-        {"{", "JSON"},
-        {"[]", "object"},
-        {"{}", "version"},
-        {"{\"asset\":{\"version\":\"1.0\"}}", "1.0"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}",
-         "KHR_draco_mesh_compression"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"EXT_meshopt_compression\"]}",
-         "EXT_meshopt_compression"},
-        {"{\"asset\":{\"version\":\"2.0\"}}", "no vertices"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[0]}]}",
-         "itself"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[7]}],\"nodes\":[{}]}", "node"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":3}]}", "mesh"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":-1}}]}]"
-         "}",
-         "accessor"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"no.bin\",\"byteLength\":5}]}", "no.bin"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"data:;base64,AAAA\",\"byteLength\":50000}]"
-         "}",
-         "50000"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"data:;base64,A!AA\",\"byteLength\":3}]}",
-         "base64"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"data:;base64,AAAA\",\"byteLength\":3}],"
-         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":3}],\"accessors\":[{\"bufferView\":0,"
-         "\"componentType\":5126,"
-         "\"count\":500000000,\"type\":\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":"
-         "0}}]}]}",
-         "beyond"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"accessors\":[{\"sparse\":{},\"componentType\":5126,\"count\":3,"
-         "\"type\":"
-         "\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
-         "sparse"},
-    };
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        ruga_mesh mesh;
-        ruga_status status = read_text("bad.gltf", bad[i].json, &mesh);
-        if (!strstr(ruga_last_error(), bad[i].word) || !strstr(ruga_last_error(), "bad.gltf")) {
-            print_error("%s: %s\n", bad[i].json, ruga_last_error());
-            fail();
-        }
-        assert_true(status == RUGA_BAD_INPUT || (i == 11 && status == RUGA_IO));
     }
 }
 
@@ -588,9 +369,8 @@ static void random_bytes_never_crash_a_reader(void** state) {
     (void)state;
     static const char* const names[] = {"r.obj", "r.ply", "r.stl", "r.off", "r.gltf", "r.glb"};
     ruga_random random = {7};
-    char data[3000], stl[512], gltf[88];
+    char data[3000], stl[512];
     size_t stl_size = binary_stl(stl);
-    (void)gltf_bytes(gltf);
     for (int i = 0; i < 240; i++) {
         for (size_t k = 0; k < sizeof data; k++) {
             data[k] = (char)ruga_random_next(&random);
@@ -775,50 +555,23 @@ static void numbers_do_not_depend_on_the_locale(void** state) {
 
 // ------------------------------------------------------------------------------ failing allocations
 
-static void read_until_success(const char* path) {
-    for (int k = 0;; k++) {
-        ruga_mesh mesh;
-        let_allocations_fail_after(k);
-        ruga_status status = ruga_mesh_read(path, &mesh);
-        if (status == RUGA_OK) {
-            allocations_left = 1000;
-            status = ruga_mesh_write(path, &mesh, NULL, NULL) == RUGA_NO_MEMORY ? RUGA_NO_MEMORY : RUGA_OK;
-            ruga_mesh_clear(&mesh);
-        }
-        ruga_set_allocator(NULL, NULL, NULL);
-        assert_int_equal(ruga_byte_count(), 0);
-        if (status == RUGA_OK) {
-            assert_true(k > 0);
-            return;
-        }
-        assert_int_equal(status, RUGA_NO_MEMORY);
-        assert_true(k < 1000);
-    }
-}
-
 static void every_failed_allocation_is_a_status(void** state) {
     (void)state;
     static const char obj[] =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 0 0\nvt 0 0\ng a\nf 1 2 3\ng b\nf 1/1 2/1 3/1 4/1 5/1\n";
     static const char off[] = "STOFF\n3 1 0\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
-    char stl[512], data[88], base64[128], gltf[4096];
+    char stl[512];
     size_t stl_size = binary_stl(stl);
-    encode_base64(data, gltf_bytes(data), base64);
-    (void)snprintf(gltf, sizeof gltf,
-                   "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":88,\"uri\":\"data:;base64,%"
-                   "s\"}],%s%s}",
-                   base64, gltf_body, gltf_nodes);
     read_until_success(write_bytes("m.obj", obj, strlen(obj)));
     read_until_success(write_bytes("m.off", off, strlen(off)));
     read_until_success(write_bytes("m.stl", stl, stl_size));
-    read_until_success(write_bytes("m.gltf", gltf, strlen(gltf)));
     ruga_mesh mesh;
     make_rich_mesh(&mesh, false);
     assert_ok(ruga_mesh_write(in_folder("m.ply"), &mesh, NULL, NULL));
     ruga_mesh_clear(&mesh);
     read_until_success(in_folder("m.ply"));
-    static const char* const names[] = {"m.obj", "m.off", "m.stl", "m.gltf", "m.ply"};
-    for (int i = 0; i < 5; i++) {
+    static const char* const names[] = {"m.obj", "m.off", "m.stl", "m.ply"};
+    for (int i = 0; i < 4; i++) {
         assert_int_equal(unlink(in_folder(names[i])), 0);
     }
 }
@@ -874,21 +627,6 @@ static void real_surfaces_have_their_counts(void** state) {
     print_message("%d real surfaces\n", read);
 }
 
-static void real_gltf_with_draco_is_refused_by_name(void** state) {
-    (void)state;
-    const char* data = getenv("RUGA_DATA");
-    char path[1024];
-    (void)snprintf(path, sizeof path, "%s/surface/market_pillow.gltf",
-                   data ? data : RUGA_SOURCE_DIR "/../shared/data");
-    if (access(path, R_OK) != 0) {
-        print_message("skipped: no real surfaces (set RUGA_DATA)\n");
-        skip();
-    }
-    ruga_mesh mesh;
-    assert_status(ruga_mesh_read(path, &mesh), RUGA_BAD_INPUT);
-    assert_non_null(strstr(ruga_last_error(), "KHR_draco_mesh_compression"));
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(obj_forms_of_faces_agree),
@@ -902,8 +640,6 @@ int main(void) {
         cmocka_unit_test(stl_binary_is_known_by_its_length_and_welded),
         cmocka_unit_test(stl_text_with_two_solids_has_groups),
         cmocka_unit_test(off_headers_are_understood),
-        cmocka_unit_test(gltf_scene_from_uri_file_and_glb),
-        cmocka_unit_test(gltf_that_cannot_be_read_says_why),
         cmocka_unit_test(malformed_text_ends_in_a_sentence_with_its_line),
         cmocka_unit_test(random_bytes_never_crash_a_reader),
         cmocka_unit_test(truncated_files_never_crash_a_reader),
@@ -913,7 +649,6 @@ int main(void) {
         cmocka_unit_test(numbers_do_not_depend_on_the_locale),
         cmocka_unit_test(every_failed_allocation_is_a_status),
         cmocka_unit_test(real_surfaces_have_their_counts),
-        cmocka_unit_test(real_gltf_with_draco_is_refused_by_name),
     };
     return cmocka_run_group_tests_name("mesh_file", tests, make_folder, remove_folder);
 }

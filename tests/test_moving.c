@@ -83,7 +83,7 @@ static void what_does_not_go_together_is_refused(void** state) {
     m.s.def.start.cone = 0;
     m.s.def.skin.motion = RUGA_SKIN_STATIC;
     m.s.def.start.cone = 1;
-    refuse(&m, "start: cone and velocity need");
+    refuse(&m, "start: cone, velocity and spin need");
     m.s.def.start.cone = 0;
     m.s.def.start.fold = NAN;
     refuse(&m, "start.fold is nan");
@@ -208,6 +208,89 @@ static void a_folded_start_is_at_rest(void** state) {
     }
 }
 
+// A ring with `pleats` pleats, each a valley and a mountain within columns of quads, which folds flat and
+// rolls.
+static void make_pleats(int pleats, moving_scene* m, ruga_crease_def* crease, double (*point)[2][3]) {
+    const int columns = 6 * pleats;
+    const ruga_make_def ring = {.shape = RUGA_SHAPE_SKIRT,
+                                .size = {0.2, 0.5, 2 * RUGA_PI},
+                                .cells = {columns, 6},
+                                .pattern = RUGA_PATTERN_DIAGONAL};
+    make_scene(0, m);
+    ruga_mesh_clear(&m->s.mesh);
+    assert_ok(ruga_mesh_make(&ring, &m->s.mesh));
+    m->s.def.mesh = ruga_mesh_as_def(&m->s.mesh);
+    for (int k = 0; k < 2 * pleats; k++) {
+        double phi = 2 * RUGA_PI * (6 * (k / 2) + (k % 2 ? 4.4 : 2.6)) / columns;
+        for (int end = 0; end < 2; end++) {
+            point[k][end][0] = (end ? 0.6 : 0.1) * cos(phi);
+            point[k][end][1] = (end ? 0.6 : 0.1) * sin(phi);
+            point[k][end][2] = 0;
+        }
+        crease[k] = ruga_default_crease_def();
+        crease[k].point_count = 2;
+        crease[k].points = point[k][0];
+        crease[k].freedom = RUGA_FREEDOM_SINGLE;
+        crease[k].rest = k % 2 ? -RUGA_PI : RUGA_PI;
+        crease[k].stiffness = 1e-3;
+    }
+    m->s.def.crease_count = 2 * pleats;
+    m->s.def.creases = crease;
+    m->s.def.start.fold = 1;
+}
+
+// Of 6 columns 1.8 are folded back: 2.4 of 6 are left of the turn.
+static void a_pleated_ring_closes_as_it_is_rolled(void** state) {
+    (void)state;
+    enum { PLEATS = 12 };
+    const double angle = 2 * RUGA_PI * 0.4;
+    ruga_crease_def crease[2 * PLEATS];
+    double point[2 * PLEATS][2][3];
+    for (int k = 0; k < 3; k++) {
+        moving_scene m;
+        make_pleats(PLEATS, &m, crease, point);
+        m.s.def.start.cone = k == 0 ? angle : k == 1 ? 0 : 1.1 * angle;
+        if (k > 0) { // flat, or rolled too little: the ring does not meet
+            refuse(&m, "start.fold: the flat panels");
+            scene_free(&m.s);
+            continue;
+        }
+        build(&m);
+        const double* x = ruga_state_positions(m.s.state);
+        double widest = 0;
+        for (int v = 0; v < m.s.model->sheet->vertex_count; v++) {
+            const double *rest = m.s.model->sheet->position + 3 * (size_t)v, *at = x + 3 * (size_t)v;
+            double along = hypot(rest[0], rest[1]);
+            assert_near(hypot(at[0], at[1]), 0.4 * along, 1e-3); // closing gaps moves them a little
+            widest = fmax(widest, fabs(remainder(atan2(at[1], at[0]), 2 * RUGA_PI)));
+        }
+        assert_true(widest > 0.95 * RUGA_PI);
+        step(&m, 3);
+        scene_free(&m.s);
+    }
+}
+
+static void a_spinning_start_turns_as_a_whole(void** state) {
+    (void)state;
+    moving_scene m;
+    make_scene(1, &m);
+    m.s.def.start.spin[2] = 0.3;
+    build(&m);
+    step(&m, 5);
+    for (int n = 0; n < m.s.model->mesh.vertex_count; n++) {
+        const double *rest = m.s.model->mesh.position + 3 * (size_t)n, *x = m.s.state->x + 3 * (size_t)n;
+        double c = cos(0.03), s = sin(0.03);
+        assert_near(x[0], c * rest[0] - s * rest[1], 1e-4);
+        assert_near(x[1], s * rest[0] + c * rest[1], 1e-4);
+    }
+    scene_free(&m.s);
+    make_scene(1, &m);
+    m.s.def.skin.motion = RUGA_SKIN_STATIC;
+    m.s.def.start.spin[2] = 0.3;
+    refuse(&m, "start: cone, velocity and spin need");
+    scene_free(&m.s);
+}
+
 static void panels_that_would_bend_are_refused(void** state) {
     (void)state;
     moving_scene m;
@@ -328,6 +411,8 @@ int main(void) {
         cmocka_unit_test(a_thrown_sheet_falls_as_a_whole),
         cmocka_unit_test(a_restart_changes_no_bit),
         cmocka_unit_test(a_folded_start_is_at_rest),
+        cmocka_unit_test(a_pleated_ring_closes_as_it_is_rolled),
+        cmocka_unit_test(a_spinning_start_turns_as_a_whole),
         cmocka_unit_test(panels_that_would_bend_are_refused),
         cmocka_unit_test(a_crease_may_come_later_without_a_jump),
         cmocka_unit_test(material_before_its_crease_moves_as_an_uncut_sheet),

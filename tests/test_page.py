@@ -13,7 +13,6 @@ import json
 import os
 import shutil
 import socket
-import struct
 import subprocess
 import sys
 import tempfile
@@ -21,6 +20,8 @@ import time
 import unittest
 import urllib.request
 import zlib
+
+from picture import colors, pixels
 
 RUGA = os.path.abspath(sys.argv.pop(1))
 SHEET = """
@@ -44,43 +45,6 @@ time:     {step: 20 ms, frames: 1}
 def skip(reason):
     print(f"skipped: {reason}")
     sys.exit(77)
-
-
-def pixels(png):
-    """Rows of bytes of an 8-bit PNG without interlacing, and the number of channels."""
-    at, data = 8, b""
-    while at < len(png):
-        size, kind = struct.unpack(">I4s", png[at:at + 8])
-        if kind == b"IHDR":
-            width, height, depth, color = struct.unpack(">IIBB", png[at + 8:at + 18])
-        data += png[at + 8:at + 8 + size] if kind == b"IDAT" else b""
-        at += size + 12
-    channels = {2: 3, 6: 4}[color]
-    assert depth == 8
-    raw, stride, rows, before = zlib.decompress(data), width * channels, [], bytes(width * channels)
-    for y in range(height):
-        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for i in range(stride):
-            left = line[i - channels] if i >= channels else 0
-            up, corner = before[i], before[i - channels] if i >= channels else 0
-            if kind == 1:
-                line[i] = (line[i] + left) & 255
-            elif kind == 2:
-                line[i] = (line[i] + up) & 255
-            elif kind == 3:
-                line[i] = (line[i] + (left + up) // 2) & 255
-            elif kind == 4:
-                guess = left + up - corner
-                distances = (abs(guess - left), abs(guess - up), abs(guess - corner))
-                line[i] = (line[i] + (left, up, corner)[distances.index(min(distances))]) & 255
-        rows.append(bytes(line))
-        before = rows[-1]
-    return rows, channels
-
-
-def colors(picture):
-    rows, n = picture
-    return [row[i:i + 3] for row in rows for i in range(0, len(row), n)]
 
 
 class Browser:
@@ -238,6 +202,18 @@ class Page(unittest.TestCase):
         self.assertGreater(sum(c[2] > c[0] + 60 for c in left), 50)  # blue
         self.assertEqual(sum(c[2] > c[0] + 60 for c in right), 0)
         self.assertGreater(sum(max(abs(a - b) for a, b in zip(c, right[0])) > 12 for c in right), 300)
+
+    def test_each_frame_has_its_own_displacement(self):
+        """Of the first frame, which is flat, none; of the last, up to the largest of all."""
+        with open(os.path.join(self.scratch.name, "sheet.html"), encoding="utf-8") as file:
+            text = file.read()
+        size = json.loads(text.split('id="meta">')[1].split("</script>")[0])
+        packed = text.split('id="displacement">')[1].split("</script>")[0]
+        values = zlib.decompress(base64.b64decode(packed))
+        first, last = values[:size["vertices"]], values[-size["vertices"]:]
+        self.assertEqual(len(values), size["vertices"] * size["frames"])
+        self.assertLessEqual(max(abs(value - 128) for value in first), 1)
+        self.assertGreater(max(abs(value - 128) for value in last), 120)
 
     def test_a_shell_without_an_interior_has_a_page_too(self):
         self.open("shell.html")

@@ -11,10 +11,8 @@ static const ruga_curve PLAIN = {.freedom = RUGA_FREEDOM_AUTO};
 static double least_area(const ruga_mesh* mesh) {
     double least = INFINITY;
     for (int f = 0; f < mesh->triangle_count; f++) {
-        const int* t = mesh->triangle + 3 * f;
         double n[3];
-        ruga_triangle_normal(mesh->position + 3 * t[0], mesh->position + 3 * t[1], mesh->position + 3 * t[2],
-                             n);
+        ruga_mesh_triangle_normal(mesh, f, n);
         least = fmin(least, n[2] < 0 ? -ruga_norm(n) : ruga_norm(n));
     }
     return least;
@@ -222,6 +220,15 @@ static void uvs_groups_and_attributes_are_carried_along(void** state) {
     clear_case(&c);
 }
 
+static void a_curve_without_length_is_refused(void** state) {
+    (void)state;
+    ruga_curves curves = {0};
+    const double point[3][3] = {{1, 2, 0}, {1, 2, 0}, {1, 2, 0}};
+    assert_int_equal(ruga_curves_add_polyline(&curves, &PLAIN, 3, point), RUGA_BAD_INPUT);
+    assert_non_null(strstr(ruga_last_error(), "crease curve 0 has no length: its points are all (1, 2, 0)"));
+    ruga_curves_clear(&curves);
+}
+
 // ------------------------------------------------------------------------------- mending
 
 static void corners_of_a_polyline_become_vertices(void** state) {
@@ -393,6 +400,7 @@ int main(void) {
         cmocka_unit_test(a_path_of_mesh_edges_is_a_crease_without_a_cut),
         cmocka_unit_test(borders_of_groups_become_closed_curves),
         cmocka_unit_test(uvs_groups_and_attributes_are_carried_along),
+        cmocka_unit_test(a_curve_without_length_is_refused),
         cmocka_unit_test(corners_of_a_polyline_become_vertices),
         cmocka_unit_test(parallel_lines_closer_than_an_edge_are_taken_apart),
         cmocka_unit_test(vertices_near_a_line_are_moved_onto_it),

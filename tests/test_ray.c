@@ -78,6 +78,25 @@ static void place_and_size_cost_no_digits(void** state) {
     }
 }
 
+// Embree stops the program at numbers that it does not want.
+static void from_beyond_all_bounds_nothing_is_seen(void** state) {
+    (void)state;
+    ruga_ray_scene* scene = square(1e-3, (const double[3]){0, 0, 0});
+    for (double height = 1e13; height < 1e40; height *= 1e3) {
+        ruga_ray ray = {{2e-4, 3e-4, height}, {0, 0, -1}, 0, INFINITY};
+        assert_int_equal(ruga_ray_closest(scene, &ray).triangle, -1);
+        assert_false(ruga_ray_blocked(scene, &ray));
+    }
+    ruga_ray_scene_destroy(&scene);
+    for (double scale = 1e-25; scale < 1e31; scale *= 1e5) {
+        scene = square(scale, (const double[3]){0, 0, 0});
+        ruga_ray ray = {{0.2 * scale, 0.3 * scale, 5 * scale}, {0, 0, -1}, scale, 1e3 * scale};
+        assert_near(ruga_ray_closest(scene, &ray).distance / scale, 5, 1e-12);
+        assert_true(ruga_ray_blocked(scene, &ray));
+        ruga_ray_scene_destroy(&scene);
+    }
+}
+
 static void rays_from_inside_a_closed_mesh_all_hit(void** state) {
     (void)state;
     enum { N = 20000 };
@@ -129,6 +148,7 @@ int main(void) {
         cmocka_unit_test(hit_is_where_the_plane_is),
         cmocka_unit_test(only_hits_between_near_and_far_count),
         cmocka_unit_test(place_and_size_cost_no_digits),
+        cmocka_unit_test(from_beyond_all_bounds_nothing_is_seen),
         cmocka_unit_test(rays_from_inside_a_closed_mesh_all_hit),
     };
     return cmocka_run_group_tests(tests, NULL, check_no_leak);

@@ -21,7 +21,8 @@
 
 static ruga_mesh make(ruga_shape shape, double x, double y, double edge) {
     ruga_mesh mesh;
-    assert_ok(ruga_mesh_make(&(ruga_make_def){.shape = shape, .size = {x, y, x}, .edge = edge}, &mesh));
+    double z = shape == RUGA_SHAPE_SHEET ? 0 : x;
+    assert_ok(ruga_mesh_make(&(ruga_make_def){.shape = shape, .size = {x, y, z}, .edge = edge}, &mesh));
     return mesh;
 }
 

@@ -485,11 +485,7 @@ static double hinge_area(const fixture* fix) {
     for (int e = 0; e < fix->connectivity.edge_count; e++) {
         const int* side = fix->connectivity.edge_triangle[e];
         for (int i = 0; i < 2 && side[0] >= 0 && side[1] >= 0; i++) {
-            const int* t = fix->mesh.triangle + 3 * side[i];
-            const double* x = fix->mesh.position;
-            double n[3];
-            ruga_triangle_normal(x + 3 * t[0], x + 3 * t[1], x + 3 * t[2], n);
-            sum += ruga_norm(n) / 6;
+            sum += ruga_mesh_triangle_area(&fix->mesh, side[i]) / 3;
         }
     }
     return sum;

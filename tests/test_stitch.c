@@ -410,11 +410,7 @@ static double longest_step(const crease_case* c) {
     ruga_stitch* stitch;
     ruga_cut_rest(&c->raster, &c->cut, x);
     for (int f = 0; f < c->raster.mesh.triangle_count; f++) {
-        const int* t = c->raster.mesh.triangle + 3 * f;
-        double n[3];
-        ruga_triangle_normal(c->raster.mesh.position + 3 * t[0], c->raster.mesh.position + 3 * t[1],
-                             c->raster.mesh.position + 3 * t[2], n);
-        triangle[f] = ruga_norm(n) / 2;
+        triangle[f] = ruga_mesh_triangle_area(&c->raster.mesh, f);
     }
     ruga_cut_masses(&c->cut, triangle, 0.02, false, mass);
     for (int p = 0; p < c->cut.piece_count; p++) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
+#include "tests/scarce_memory.h"
 
 #include "app/validate/film.h"
 #include "core/memory.h"
@@ -484,17 +485,6 @@ static void a_scene_that_no_volume_can_follow_is_refused(void** state) {
     }
 }
 
-static void* allocate_while_allowed(size_t size, void* context) {
-    int* allowed = context;
-    return (*allowed)-- > 0 ? aligned_alloc(64, (size + 63) / 64 * 64) : NULL;
-}
-
-static void release_block(void* memory, size_t size, void* context) {
-    (void)size;
-    (void)context;
-    free(memory);
-}
-
 static void any_failed_allocation_is_a_status_and_leaks_nothing(void** state) {
     (void)state;
     film_def def = coarse_film();
@@ -504,8 +494,7 @@ static void any_failed_allocation_is_a_status_and_leaks_nothing(void** state) {
     ruga_set_threads(1);
     for (int k = 0; status != RUGA_OK && k < 1000; k++) {
         film_point point = {.strain = 1e-3};
-        int allowed = k;
-        ruga_set_allocator(allocate_while_allowed, release_block, &allowed);
+        let_allocations_fail_after(k);
         status = film_branch(&def, 0.5 * film_wavelength(&def), 1, &point);
         ruga_set_allocator(NULL, NULL, NULL);
         assert_true(status == RUGA_OK || status == RUGA_NO_MEMORY);

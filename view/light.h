@@ -7,9 +7,11 @@
 
 #include "view/ray.h"
 
-// Number `place` of a sequence that fills the half-sphere about the unit normal n evenly, as densely as the
-// cosine; shift [2] in [0, 1) makes sequences that do not agree with one another.
-void ruga_light_direction(const double n[3], int place, const double shift[2], double direction[3]);
+// Numbers first, first + 1, .. of a sequence that fills the half-sphere about the unit normal n evenly, as
+// densely as the cosine: direction [count][3]. shift [2] in [0, 1) makes sequences that do not agree with one
+// another.
+void ruga_light_directions(const double n[3], int first, int count, const double shift[2],
+                           double (*direction)[3]);
 
 // The part of the sky's light, as an evenly bright half-sphere about the unit normal n would send it to x,
 // that the mesh lets through: 1 in the open (ambient occlusion is one less it). Rays start `near` metres from

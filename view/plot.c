@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { COLORS = 7, SHAPES = 4 };
+enum { SHAPES = 4 };
 static const double MARKER = 3.6, SAMPLE = 26, LEGEND_ROW = 20;
 
 typedef struct page {
@@ -18,10 +18,10 @@ typedef struct page {
 
 // Okabe and Ito's colours, which people with any colour vision can tell apart.
 static unsigned series_color(const ruga_plot_def* def, int k) {
-    static const unsigned palette[COLORS] = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7,
-                                             0xe69f00, 0x56b4e9, 0x000000};
+    static const unsigned palette[RUGA_PLOT_COLORS] = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7,
+                                                       0xe69f00, 0x56b4e9, 0x000000};
     int place = def->series[k].color > 0 ? def->series[k].color - 1 : k;
-    return palette[place % COLORS];
+    return palette[place % RUGA_PLOT_COLORS];
 }
 
 static bool shows(const page* p, const ruga_plot_series* s, int i) {

@@ -8,6 +8,8 @@
 
 #include "core/status.h"
 
+enum { RUGA_PLOT_COLORS = 7 }; // series beyond take them again
+
 typedef struct ruga_plot_axis {
     const char* name;
     bool logarithmic; // values that are not positive are then left out

@@ -114,20 +114,26 @@ void ruga_ray_scene_destroy(ruga_ray_scene** scene) {
 
 // ---- rays ----------------------------------------------------------------------------------------------
 
+// Embree wants numbers below 1.8e18. Seen from so far the scene is no dot.
+static bool is_far(const ruga_ray_scene* s, const ruga_ray* ray) {
+    return !(s->scale * ruga_distance(ray->origin, s->center) < 1e15);
+}
+
 static struct RTCRay convert(const ruga_ray_scene* s, const ruga_ray* ray) {
     float o[3], d[3];
     for (int k = 0; k < 3; k++) {
         o[k] = (float)(s->scale * (ray->origin[k] - s->center[k]));
-        d[k] = (float)(s->scale * ray->direction[k]);
+        d[k] = (float)ray->direction[k];
     }
+    double far = s->scale * ray->far;
     return (struct RTCRay){.org_x = o[0],
                            .org_y = o[1],
                            .org_z = o[2],
-                           .tnear = (float)ray->near,
+                           .tnear = (float)(s->scale * ray->near),
                            .dir_x = d[0],
                            .dir_y = d[1],
                            .dir_z = d[2],
-                           .tfar = ray->far < (double)FLT_MAX ? (float)ray->far : FLT_MAX,
+                           .tfar = far < (double)FLT_MAX ? (float)far : FLT_MAX,
                            .mask = ~0u};
 }
 
@@ -156,6 +162,10 @@ static void refine(const ruga_ray_scene* s, const ruga_ray* ray, ruga_ray_hit* h
 }
 
 ruga_ray_hit ruga_ray_closest(const ruga_ray_scene* scene, const ruga_ray* ray) {
+    const ruga_ray_hit nothing = {.triangle = -1, .distance = INFINITY};
+    if (is_far(scene, ray)) {
+        return nothing;
+    }
     struct RTCRayHit found = {
         .ray = convert(scene, ray),
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
@@ -163,15 +173,18 @@ ruga_ray_hit ruga_ray_closest(const ruga_ray_scene* scene, const ruga_ray* ray) 
     rtcInitIntersectContext(&context);
     rtcIntersect1(scene->scene, &context, &found);
     if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-        return (ruga_ray_hit){.triangle = -1, .distance = INFINITY};
+        return nothing;
     }
     double u = (double)found.hit.u, v = (double)found.hit.v;
-    ruga_ray_hit hit = {(int)found.hit.primID, (double)found.ray.tfar, {1 - u - v, u, v}};
+    ruga_ray_hit hit = {(int)found.hit.primID, (double)found.ray.tfar / scene->scale, {1 - u - v, u, v}};
     refine(scene, ray, &hit);
     return hit;
 }
 
 bool ruga_ray_blocked(const ruga_ray_scene* scene, const ruga_ray* ray) {
+    if (is_far(scene, ray)) {
+        return false;
+    }
     struct RTCRay r = convert(scene, ray);
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);

@@ -95,8 +95,8 @@ static void set_camera(scene* s) {
     ruga_add_scaled(c->ground - ruga_dot(s->middle, c->axis), c->axis, s->middle);
 }
 
-// From the left and low enough to graze the wrinkles; more from the front where the camera stands low, and from
-// below where it looks from under the floor. Values are shown under white light.
+// From the left and low enough to graze the wrinkles; more from the front where the camera stands low, and
+// from below where it looks from under the floor. Values are shown under white light.
 static void set_lights(scene* s) {
     static const double warm[3] = {3.1, 2.9, 2.65}, cool[3] = {0.66, 0.70, 0.76},
                         neutral[3] = {2.9, 2.9, 2.9}, grey[3] = {0.9, 0.9, 0.9},
@@ -258,10 +258,11 @@ static double key_light(const scene* s, const surface* seen, ruga_random* random
 // `first`: how many of the pixel's sky rays came before.
 static double sky(const scene* s, const surface* seen, int first, const double shift[2]) {
     const double sent_back = 0.2; // of the light that falls on another part of the surface
-    double sum = 0;
+    double sum = 0, direction[SKY_RAYS][3];
+    ruga_ray ray = {.origin = {seen->x[0], seen->x[1], seen->x[2]}, .near = s->near, .far = INFINITY};
+    ruga_light_directions(seen->n, first, SKY_RAYS, shift, direction);
     for (int j = 0; j < SKY_RAYS; j++) {
-        ruga_ray ray = {.origin = {seen->x[0], seen->x[1], seen->x[2]}, .near = s->near, .far = INFINITY};
-        ruga_light_direction(seen->n, first + j, shift, ray.direction);
+        memcpy(ray.direction, direction[j], sizeof direction[j]);
         double light = sky_light(s, ray.direction);
         sum += ruga_ray_blocked(s->rays, &ray) ? (seen->kind == OBJECT ? sent_back * light : 0) : light;
     }

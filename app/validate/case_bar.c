@@ -40,9 +40,8 @@ static ruga_status share_outside(ruga_body* b, const double* w, bool gradients, 
     for (int f = 0; f < count; f++) {
         const int* t = b->mesh.triangle + 3 * f;
         const double *X = b->mesh.position, *corner[3] = {X + 3 * t[0], X + 3 * t[1], X + 3 * t[2]};
-        double u[3], v[3], normal[3], along = 0, length = 0;
-        ruga_triangle_normal(corner[0], corner[1], corner[2], normal);
-        face[f].area = 0.5 * ruga_norm(normal);
+        double u[3], v[3], along = 0, length = 0;
+        face[f].area = ruga_mesh_triangle_area(&b->mesh, f);
         for (int e = 0; e < 3; e++) { // strain along the bar, of the edges that have a part along it
             int i = t[e], j = t[(e + 1) % 3];
             ruga_subtract(X + 3 * j, X + 3 * i, u);

@@ -5,12 +5,12 @@
 // one length. Physics knows no scale, so that thickness counts through the number of waves that fit in the
 // length.
 #include "app/meter.h"
+#include "app/validate/band.h"
 #include "app/validate/cases.h"
 #include "app/validate/sheet.h"
 #include "core/memory.h"
 #include "io/writer.h"
 #include "mesh/make.h"
-#include "view/plot.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -162,14 +162,7 @@ static ruga_status draw_ratios(ruga_validation* v, const map* m) {
     double x[POINTS], y[POINTS];
     static const double ends[2] = {10, 30000}, one[2] = {1, 1}, low[2] = {1 - 0.05, 1 - 0.05},
                         high[2] = {1 + 0.05, 1 + 0.05};
-    ruga_plot_series series[THICKNESSES + 1] = {{.name = "eq. 3, 5 %",
-                                                 .count = 2,
-                                                 .x = ends,
-                                                 .y = one,
-                                                 .low = low,
-                                                 .high = high,
-                                                 .style = RUGA_PLOT_LINE,
-                                                 .color = 7}};
+    ruga_plot_series series[THICKNESSES + 1] = {reference_band("eq. 3, 5 %", 2, ends, one, low, high)};
     int count = 1;
     for (int j = 0; j < THICKNESSES; j++) {
         int judged = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
+#include "app/validate/band.h"
 #include "app/validate/cases.h"
 #include "app/validate/sheet.h"
-#include "view/plot.h"
 
 #include <math.h>
 
@@ -56,14 +56,7 @@ static ruga_status draw_amplitude(ruga_validation* v, int count, const sheet_res
         low[i] = 0.94 * law[i];
         high[i] = 1.06 * law[i];
     }
-    ruga_plot_series series[RATIOS + 1] = {{.name = "law, 6 %",
-                                            .count = LAW_POINTS,
-                                            .x = x,
-                                            .y = law,
-                                            .low = low,
-                                            .high = high,
-                                            .style = RUGA_PLOT_LINE,
-                                            .color = 7}};
+    ruga_plot_series series[RATIOS + 1] = {reference_band("law, 6 %", LAW_POINTS, x, law, low, high)};
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < STRAINS; k++) {
             ours[i][k] = results[i].frame[k].amplitude / results[i].thickness;
@@ -84,14 +77,7 @@ static ruga_status draw_wavelength(ruga_validation* v, int count, const sheet_re
     char path[RUGA_VALIDATION_PATH], names[RATIOS][48];
     double ours[RATIOS][STRAINS];
     static const double ends[2] = {0.9, 3.1}, one[2] = {1, 1}, low[2] = {0.95, 0.95}, high[2] = {1.05, 1.05};
-    ruga_plot_series series[RATIOS + 1] = {{.name = "eq. 3, 5 %",
-                                            .count = 2,
-                                            .x = ends,
-                                            .y = one,
-                                            .low = low,
-                                            .high = high,
-                                            .style = RUGA_PLOT_LINE,
-                                            .color = 7}};
+    ruga_plot_series series[RATIOS + 1] = {reference_band("eq. 3, 5 %", 2, ends, one, low, high)};
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < STRAINS; k++) {
             ours[i][k] = strains[k] > 1 ? results[i].frame[k].wavelength_fft / results[i].wavelength : NAN;

@@ -3,11 +3,11 @@
 //
 // Figure 6 of the paper: the embedded shell against a volume whose skin is thin elements. Neither knows the
 // other's formulas: the shell has membrane, bending, clusters and foundation, the volume has one elasticity.
+#include "app/validate/band.h"
 #include "app/validate/cases.h"
 #include "app/validate/film_answer.h"
 
 #include "io/writer.h"
-#include "view/plot.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -42,14 +42,8 @@ static ruga_status draw(ruga_validation* v, int count, const ratios* r, bool amp
     double tolerance = amplitude ? 0.1 : 0.08, low[] = {1 - tolerance, 1 - tolerance};
     double high[] = {1 + tolerance, 1 + tolerance}, x[4][MATERIALS_ALL], y[4][MATERIALS_ALL];
     char path[RUGA_VALIDATION_PATH], names[4][64];
-    ruga_plot_series series[5] = {{.name = amplitude ? "the volume, 10 %" : "the volume, 8 %",
-                                   .count = 2,
-                                   .x = ends,
-                                   .y = one,
-                                   .low = low,
-                                   .high = high,
-                                   .style = RUGA_PLOT_LINE,
-                                   .color = 7}};
+    ruga_plot_series series[5] = {
+        reference_band(amplitude ? "the volume, 10 %" : "the volume, 8 %", 2, ends, one, low, high)};
     int used = 1;
     for (int k = 0; k < (amplitude ? 4 : 2); k++) {
         int points = 0;

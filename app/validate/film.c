@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Ruga authors
 #include "app/validate/film.h"
 
+#include "app/validate/line.h"
 #include "core/memory.h"
 #include "core/progress.h"
 #include "core/vec3.h"
@@ -217,17 +218,12 @@ ruga_status film_branch(const film_def* def, double half, int count, film_point*
 }
 
 double film_fit(int count, const film_point* points, double from, double to) {
-    double n = 0, sx = 0, sxx = 0, sy = 0, sxy = 0;
+    fitted_line line = {0};
     for (int k = 0; k < count; k++) {
         double x = points[k].strain, y = points[k].amplitude * points[k].amplitude;
         if (x >= from * (1 - 1e-9) && x <= to * (1 + 1e-9)) {
-            n += 1;
-            sx += x;
-            sxx += x * x;
-            sy += y;
-            sxy += x * y;
+            line_add(&line, x, y);
         }
     }
-    double slope = n > 1 ? (n * sxy - sx * sy) / (n * sxx - sx * sx) : 0;
-    return slope > 0 ? (sx - sy / slope) / n : 0;
+    return line_zero(&line);
 }

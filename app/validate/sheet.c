@@ -3,6 +3,7 @@
 #include "app/validate/sheet.h"
 
 #include "app/measure.h"
+#include "app/validate/line.h"
 #include "core/memory.h"
 #include "core/progress.h"
 #include "core/vec3.h"
@@ -161,21 +162,16 @@ done:
 }
 
 double sheet_onset(int count, const sheet_frame* frames, double critical, bool own, double poisson) {
-    double n = 0, sx = 0, sxx = 0, sy = 0, sxy = 0;
+    fitted_line line = {0};
     for (int k = 0; k < count; k++) {
         const sheet_frame* f = &frames[k];
         double x = (own ? f->skin_strain + poisson * f->across_strain : f->strain) / critical;
         double y = own ? f->middle_amplitude * f->middle_amplitude : f->amplitude * f->amplitude;
         if (f->strain > 0 && x > 1.1 - 1e-9 && x < 1.6 + 1e-9) {
-            n += 1;
-            sx += x;
-            sxx += x * x;
-            sy += y;
-            sxy += x * y;
+            line_add(&line, x, y);
         }
     }
-    double slope = n > 1 ? (n * sxy - sx * sy) / (n * sxx - sx * sx) : 0;
-    return slope > 0 ? (sx - sy / slope) / n : 0;
+    return line_zero(&line);
 }
 
 ruga_status sheet_run(const sheet_def* def, sheet_frame* frames, double* wavelength, double* critical,

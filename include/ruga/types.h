@@ -247,6 +247,7 @@ typedef struct ruga_start_def {
     double
         cone; // rad: a sector of the plane z = 0 about the origin, of this angle, closes to a cone; 0 = none
     double velocity[3]; // m/s
+    double spin[3];     // rad/s, about the origin; added to it
 } ruga_start_def;
 
 typedef struct ruga_model_def {

@@ -43,6 +43,7 @@ function drawPanel(canvas, panel, time, frame) {
   panel.series.forEach((s, k) => {
     c.strokeStyle = palette[k % palette.length];
     c.lineWidth = 1.4;
+    c.setLineDash(k < palette.length ? [] : [4, 3]);
     c.beginPath();
     let down = false;
     s.y.forEach((v, i) => {
@@ -56,6 +57,7 @@ function drawPanel(canvas, panel, time, frame) {
     });
     c.stroke();
   });
+  c.setLineDash([]);
   c.strokeStyle = "#b5543b";
   c.lineWidth = 1;
   c.beginPath();

@@ -4,14 +4,15 @@
 // Patkar, Jin and Fedkiw 2015, section 6, figure 3 (d). With d the distance of a vertex from a straight
 // crease folded by theta, its copies are 2 d |sin(theta / 2)| apart, so that springs of rest length 2 d
 // sin(theta0 / 2) act on the crease with the stiffness (sum k d^2) cos^2(theta0 / 2).
-#include "crease/springs.h"
+#include "crease/pairs.h"
 
 #include "core/memory.h"
-#include "core/vec3.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
+
+static ruga_pair pair_of(int a, int b, int curve) {
+    return (ruga_pair){{a < b ? a : b, a < b ? b : a}, curve};
+}
 
 static int compare_pairs(const void* a, const void* b) {
     const ruga_pair *p = a, *q = b;
@@ -39,7 +40,7 @@ ruga_status ruga_pairs_create(const ruga_cut* cut, int* count, ruga_pair** pair)
         for (int i = 0; i < 3 && cut->segment[s].curve >= 0 && side[0]->triangle == side[1]->triangle; i++) {
             int a = side[0]->node[i], b = side[1]->node[i];
             if (a != b) {
-                list[found++] = (ruga_pair){{a < b ? a : b, a < b ? b : a}, cut->segment[s].curve};
+                list[found++] = pair_of(a, b, cut->segment[s].curve);
             }
         }
     }
@@ -55,19 +56,8 @@ ruga_status ruga_pairs_create(const ruga_cut* cut, int* count, ruga_pair** pair)
     return RUGA_OK;
 }
 
-double ruga_pair_energy(const ruga_pair* pair, double stiffness, double length, const double* x,
-                        double gradient[3], double hessian[9]) {
-    double d[3];
-    ruga_subtract(x + 3 * (size_t)pair->node[0], x + 3 * (size_t)pair->node[1], d);
-    double now = ruga_normalize(d), off = now - length;
-    for (int i = 0; i < 3 && gradient; i++) {
-        gradient[i] = stiffness * off * d[i];
-    }
-    // k d d^T along the spring, and its force over its length across it.
-    double across = now > 0 ? stiffness * off / now : length > 0 ? 0 : stiffness;
-    for (int k = 0; k < 9 && hessian; k++) {
-        double dd = d[k / 3] * d[k % 3];
-        hessian[k] = stiffness * dd + across * ((k % 4 == 0) - dd);
-    }
-    return 0.5 * stiffness * off * off;
+int ruga_pairs_find(int count, const ruga_pair* pair, int a, int b, int curve) {
+    const ruga_pair key = pair_of(a, b, curve);
+    const ruga_pair* at = bsearch(&key, pair, (size_t)count, sizeof *pair, compare_pairs);
+    return at ? (int)(at - pair) : -1;
 }
