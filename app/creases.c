@@ -2,7 +2,9 @@
 // Copyright (c) 2026 The Ruga authors
 #include "app/creases.h"
 
+#include "app/console.h"
 #include "core/memory.h"
+#include "core/vec3.h"
 
 #include <string.h>
 
@@ -53,4 +55,34 @@ ruga_status ruga_crease_table_create(const ruga_model* model, ruga_crease_table*
         ruga_crease_table_clear(table);
     }
     return status;
+}
+
+// Of all curves that share a trouble, the first is named.
+void ruga_warn_of_creases(const ruga_arguments* arguments, const ruga_model* model) {
+    const ruga_raster* raster = model->creases ? &model->creases->raster : NULL;
+    int none = 0, part = 0, first[2] = {-1, -1};
+    for (int c = 0; raster && c < raster->curve_count; c++) {
+        const ruga_curve_facts* f = &raster->facts[c];
+        if (!(f->placed > 0)) {
+            first[0] = none++ == 0 ? c : first[0];
+        } else if (f->left > 1e-6 * f->length) {
+            first[1] = part++ == 0 ? c : first[1];
+        }
+    }
+    if (none > 0) {
+        const ruga_curve_facts* f = &raster->facts[first[0]];
+        ruga_warn(arguments, "%s: there is nothing of it in the sheet, as it %s (%d of these)",
+                  model->creases->law[raster->curve[first[0]].label].name,
+                  !(f->length > 0) ? "has no length"
+                  : f->left > 0    ? "lies on other creases"
+                                   : "lies on the border",
+                  none);
+    }
+    if (part > 0) {
+        ruga_warn(arguments,
+                  "%s: %.3g mm of its %.3g mm lie on other creases, of which cuts and then the first count "
+                  "(%d of these)",
+                  model->creases->law[raster->curve[first[1]].label].name, 1e3 * raster->facts[first[1]].left,
+                  1e3 * raster->facts[first[1]].length, part);
+    }
 }

@@ -4,6 +4,7 @@
 // ruga explain: what a scene means, before any solve.
 #include "app/command.h"
 #include "app/console.h"
+#include "app/creases.h"
 #include "app/estimate.h"
 #include "lattice/motion.h"
 #include "shell/shell.h"
@@ -39,12 +40,12 @@ static void judge(facts* f) {
     if (f->refused) {
         (void)snprintf(
             f->judged[0], sizeof f->judged[0],
-            "%.2g edges per wavelength are below %g, run will refuse this: remesh with edge %.3g mm, or "
+            "%.3g edges per wavelength are below %g, run will refuse this: remesh with edge %.3g mm, or "
             "set solver.allow_coarse",
             f->edges, edges_least, good);
     } else if (f->edges < edges_good) {
         (void)snprintf(f->judged[0], sizeof f->judged[0],
-                       "%.2g edges per wavelength are below %g: remesh with edge %.3g mm", f->edges,
+                       "%.3g edges per wavelength are below %g: remesh with edge %.3g mm", f->edges,
                        edges_good, good);
     }
     ruga_judge_handles(f->model, f->judged[1], sizeof f->judged[1]);
@@ -258,6 +259,7 @@ static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
     } else {
         say_all(arguments, &f);
     }
+    ruga_warn_of_creases(arguments, f.model);
     for (int i = 0; i < 2; i++) {
         if (*f.judged[i] && !(f.refused && i == 0)) {
             ruga_warn(arguments, "%s", f.judged[i]);

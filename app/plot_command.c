@@ -10,6 +10,7 @@
 #include "io/csv.h"
 #include "view/plot.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { SERIES_MAX = 7, PAGE_COLUMNS = 2 };
@@ -20,7 +21,8 @@ static const ruga_option options[] = {
     {"--what", NULL, "LIST",
      "plots with commas between them. Of a result: energy, residual, iterations, seconds,\n"
      "wavelength, amplitude, angle, force [all that it has]. Of a CSV table: names of\n"
-     "columns, with + between those of one plot [each]",
+     "columns, with + between those of one plot [each; of many\n"
+     "those that vary, twelve at most]",
      false},
     {"--x", NULL, "COLUMN", "of a CSV table: the column along the x axis [the first]", false},
     {"--log", NULL, axes, "of a CSV table: logarithmic axes [none]", false},
@@ -183,12 +185,36 @@ static ruga_status take_named(table* t, const char* what) {
     return RUGA_OK;
 }
 
-static ruga_status take_all(table* t) {
+static bool varies(const ruga_csv* csv, int column) {
+    const double* value = csv->column[column];
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < csv->row_count; i++) {
+        low = fmin(low, value[i]);
+        high = fmax(high, value[i]);
+    }
+    return low < high;
+}
+
+// Of more columns than there is room for, the first of those that vary.
+static ruga_status take_all(const ruga_arguments* arguments, table* t) {
+    int count = 0, left = 0;
     for (int c = 0; c < t->csv.column_count; c++) {
-        if (c != t->x && has_numbers(&t->csv, c)) {
-            RUGA_TRY(start_plot(t, t->csv.name[c]));
-            RUGA_TRY(add_column(t, c, false));
+        count += c != t->x && has_numbers(&t->csv, c);
+    }
+    for (int c = 0; c < t->csv.column_count; c++) {
+        if (c == t->x || !has_numbers(&t->csv, c)) {
+            continue;
         }
+        if (count > RUGA_PANELS_MAX && (t->count == RUGA_PANELS_MAX || !varies(&t->csv, c))) {
+            left++;
+            continue;
+        }
+        RUGA_TRY(start_plot(t, t->csv.name[c]));
+        RUGA_TRY(add_column(t, c, false));
+    }
+    if (left > 0) {
+        ruga_warn(arguments, "%s: %d of its %d columns of numbers are left out; --what chooses others",
+                  t->file, left, count);
     }
     return t->count > 0 ? RUGA_OK : ruga_fail(RUGA_BAD_INPUT, "%s has no column of numbers to plot", t->file);
 }
@@ -206,7 +232,7 @@ static ruga_status plot_table(const ruga_arguments* arguments, const char* path)
     if (x) {
         RUGA_TRY_DONE(find_column(&t.csv, t.file, x, strlen(x), &t.x));
     }
-    RUGA_TRY_DONE(what ? take_named(&t, what) : take_all(&t));
+    RUGA_TRY_DONE(what ? take_named(&t, what) : take_all(arguments, &t));
     RUGA_TRY_DONE(write_page(arguments, t.count, t.defs, path));
 done:
     ruga_csv_clear(&t.csv);

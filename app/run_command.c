@@ -142,7 +142,7 @@ static void warn_of_coarse_mesh(const job* j) {
     if (j->model->has_interior && j->model->solves_skin && edges < 8) {
         ruga_warn(
             j->arguments,
-            "the mesh has %.2g edges per wrinkle wavelength (%.3g mm); below 8 wrinkles come out too long or "
+            "the mesh has %.3g edges per wrinkle wavelength (%.3g mm); below 8 wrinkles come out too long or "
             "not at all: remesh with edge %.3g mm",
             edges, 1e3 * wavelength, 1e3 * wavelength / 8);
     }
@@ -264,6 +264,7 @@ static ruga_status simulate(job* j) {
     warn_of_coarse_mesh(j);
     warn_of_loose_fit(j);
     warn_of_handles(j);
+    ruga_warn_of_creases(j->arguments, j->model);
     RUGA_TRY(ruga_state_create(j->model, &j->state));
     RUGA_TRY(open_result(j));
     if (!j->continues) {

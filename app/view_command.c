@@ -177,6 +177,12 @@ static const char* file_name(const char* path) {
     return slash ? slash + 1 : path;
 }
 
+// What is not UTF-8 is left out rather than making the whole page fail.
+static json_t* text_json(const char* text) {
+    json_t* json = json_string(text);
+    return json ? json : json_string("");
+}
+
 // The direction to the camera, by a camera that is framed on the box.
 static void find_view(const job* j, double toward[3]) {
     const double corner[2][3] = {{j->low[0], j->low[1], j->low[2]}, {j->high[0], j->high[1], j->high[2]}};
@@ -200,17 +206,15 @@ static ruga_status make_json(job* j, char** text) {
         middle[k] = 0.5 * (j->low[k] + j->high[k]);
     }
     const char* scene = ruga_result_reader_header(j->reader)->scene_text;
-    json_t* object =
-        json_pack("{s:s, s:i, s:i, s:b, s:o, s:f, s:o, s:f, s:o, s:o, s:f, s:o, s:o, s:o, s:o, s:o}", "name",
-                  file_name(ruga_operand(j->arguments)), "vertices", j->vertices, "frames", j->frames,
-                  "embedded", (int)j->tied, "low", ruga_json_vector(j->low), "step", j->step, "middle",
-                  ruga_json_vector(middle), "radius", fmax(0.5 * ruga_distance(j->low, j->high), 1e-9), "up",
-                  ruga_json_vector(j->def.up), "toward", ruga_json_vector(toward), "displacement",
-                  1e3 * j->largest, "colors", colors_json(), "time", numbers_json(j, j->panels.time),
-                  "outcome", outcome, "panels", panels_json(j), "facts", facts_json(j));
-    // A scene that is not UTF-8 is left out rather than making the whole page fail.
-    json_t* scene_json = json_string(scene);
-    (void)json_object_set_new(object, "scene", scene_json ? scene_json : json_string(""));
+    json_t* object = json_pack(
+        "{s:o, s:i, s:i, s:b, s:o, s:f, s:o, s:f, s:o, s:o, s:f, s:o, s:o, s:o, s:o, s:o}", "name",
+        text_json(file_name(ruga_operand(j->arguments))), "vertices", j->vertices, "frames", j->frames,
+        "embedded", (int)j->tied, "low", ruga_json_vector(j->low), "step", j->step, "middle",
+        ruga_json_vector(middle), "radius", fmax(0.5 * ruga_distance(j->low, j->high), 1e-9), "up",
+        ruga_json_vector(j->def.up), "toward", ruga_json_vector(toward), "displacement", 1e3 * j->largest,
+        "colors", colors_json(), "time", numbers_json(j, j->panels.time), "outcome", outcome, "panels",
+        panels_json(j), "facts", facts_json(j));
+    (void)json_object_set_new(object, "scene", text_json(scene));
     *text = object ? json_dumps(object, JSON_COMPACT | JSON_ESCAPE_SLASH) : NULL;
     json_decref(object);
     return *text ? RUGA_OK : ruga_fail(RUGA_NO_MEMORY, "out of memory while making the page");

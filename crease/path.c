@@ -84,6 +84,17 @@ static bool on_boundary(const ruga_sheet* sheet, int f, const double weight[3]) 
     return false;
 }
 
+// A place at a corner of its face is that vertex.
+static void take_vertex(const ruga_sheet* sheet, ruga_place* place) {
+    for (int i = 0; i < 3; i++) {
+        int v = sheet->mesh.triangle[3 * (size_t)place->face + (size_t)i];
+        if (ruga_distance(place->x, ruga_sheet_position(sheet, v)) <= SAME_PLACE * sheet->edge) {
+            place->vertex = v;
+            memcpy(place->x, ruga_sheet_position(sheet, v), sizeof place->x);
+        }
+    }
+}
+
 static ruga_status project(const drawer* d, const double x[3], ruga_place* place) {
     const ruga_sheet* sheet = d->sheet;
     double nearest[3], weight[3], off[3], n[3];
@@ -99,13 +110,7 @@ static ruga_status project(const drawer* d, const double x[3], ruga_place* place
         ruga_add_scaled(1, off, place->x);
         return RUGA_OK;
     }
-    for (int i = 0; i < 3; i++) {
-        int v = sheet->mesh.triangle[3 * (size_t)place->face + (size_t)i];
-        if (ruga_distance(nearest, ruga_sheet_position(sheet, v)) <= SAME_PLACE * sheet->edge) {
-            place->vertex = v;
-            memcpy(place->x, ruga_sheet_position(sheet, v), sizeof place->x);
-        }
-    }
+    take_vertex(sheet, place);
     return RUGA_OK;
 }
 
@@ -425,7 +430,8 @@ void ruga_paths_renew(const ruga_sheet* sheet, ruga_paths* paths) {
             } else if (!s.place.beyond) {
                 s.place.face = ruga_sheet_locate(sheet, s.place.face, s.place.x, weight);
                 ruga_sheet_point(sheet, s.place.face, weight,
-                                 s.place.x); // on a curved surface its triangles moved
+                                 s.place.x);  // on a curved surface its triangles moved
+                take_vertex(sheet, &s.place); // one may have been made here, or moved here
             }
             if (count > 0 && is_repeat(sheet, &path->station[count - 1], &s)) {
                 // Of the two, a vertex stays.

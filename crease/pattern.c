@@ -86,10 +86,13 @@ double ruga_crease_pattern_rest(const ruga_crease_pattern_edge* edge) {
 
 // ------------------------------------------------------------------------------- curves
 
+static const double same_angle = 1e-9; // rad: measured angles of one crease have their round-off
+
 typedef struct chainer {
     const ruga_crease_pattern* pattern;
     bool flat;
-    int* degree;      // [V] edges of any kind
+    int* degree;      // [V] edges, without flat ones where these are no creases
+    bool* facet;      // [V] flat edges that are no creases end there
     int (*around)[2]; // [V] its first two edges
     bool* done;       // [E]
     int* path;        // [E + 1] vertices
@@ -107,7 +110,8 @@ static int next_edge(const chainer* c, int e, int v) {
     }
     int next = c->around[v][0] == e ? c->around[v][1] : c->around[v][0];
     const ruga_crease_pattern_edge *a = &c->pattern->edge[e], *b = &c->pattern->edge[next];
-    bool same = a->assignment == b->assignment && ruga_crease_pattern_rest(a) == ruga_crease_pattern_rest(b);
+    bool same = a->assignment == b->assignment &&
+                fabs(ruga_crease_pattern_rest(a) - ruga_crease_pattern_rest(b)) <= same_angle;
     return same && !c->done[next] ? next : -1;
 }
 
@@ -148,6 +152,10 @@ static ruga_status add_chain(const chainer* c, const ruga_curve* style, int firs
     }
     ruga_curve own = *style;
     own.label = first;
+    // Flat lines that end at a crease say that its panels may bend there.
+    for (int i = 1; i + 1 < count && own.freedom == RUGA_FREEDOM_AUTO; i++) {
+        own.freedom = c->facet[c->path[i]] ? RUGA_FREEDOM_FULL : RUGA_FREEDOM_AUTO;
+    }
     own.kind = c->pattern->edge[first].assignment == RUGA_ASSIGNMENT_CUT ? RUGA_CREASE_CUT : RUGA_CREASE_FOLD;
     own.closed = count > 3 && c->path[0] == c->path[count - 1];
     ruga_status status =
@@ -161,12 +169,18 @@ ruga_status ruga_crease_pattern_curves(const ruga_crease_pattern* pattern, const
     ruga_status status = RUGA_OK;
     chainer c = {.pattern = pattern, .flat = flat};
     RUGA_TRY_DONE(RUGA_NEW_ZERO(c.degree, pattern->vertex_count));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(c.facet, pattern->vertex_count));
     RUGA_TRY_DONE(RUGA_NEW(c.around, pattern->vertex_count));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(c.done, pattern->edge_count));
     RUGA_TRY_DONE(RUGA_NEW(c.path, (size_t)pattern->edge_count + 1));
     for (int e = 0; e < pattern->edge_count; e++) {
+        bool counts = flat || pattern->edge[e].assignment != RUGA_ASSIGNMENT_FLAT;
         for (int end = 0; end < 2; end++) {
             int v = pattern->edge[e].vertex[end];
+            c.facet[v] = c.facet[v] || !counts;
+            if (!counts) {
+                continue;
+            }
             if (c.degree[v] < 2) {
                 c.around[v][c.degree[v]] = e;
             }
@@ -182,6 +196,7 @@ ruga_status ruga_crease_pattern_curves(const ruga_crease_pattern* pattern, const
     }
 done:
     ruga_release(c.degree);
+    ruga_release(c.facet);
     ruga_release(c.around);
     ruga_release(c.done);
     ruga_release(c.path);

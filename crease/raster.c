@@ -159,17 +159,22 @@ static ruga_status add_chord(build* b, ruga_chord chord) {
 // and what lies on an earlier curve is left to it.
 static ruga_status add_link(build* b, const ruga_hit* h, int curve, const double along[2]) {
     ruga_raster* r = b->raster;
+    ruga_curve_facts* facts = &r->facts[curve];
     const ruga_hit* g = h - 1;
     if (h->face >= 0) {
         int end[2] = {local_place(r, h->face, g), local_place(r, h->face, h)};
         RUGA_ASSERT(end[0] >= 0 && end[1] >= 0);
         if (!is_new_chord(b, h->face, end)) {
+            facts->left += along[1] - along[0];
             return RUGA_OK;
         }
         RUGA_TRY(add_chord(b, (ruga_chord){h->face, {end[0], end[1]}, curve, {along[0], along[1]}}));
     } else {
         int e = ruga_edge_between(&r->edges, g->vertex, h->vertex);
         RUGA_ASSERT(e >= 0);
+        if (r->crease[e] >= 0) {
+            facts->left += along[1] - along[0];
+        }
         if (r->edges.edge_triangle[e][0] < 0 || r->edges.edge_triangle[e][1] < 0 || r->crease[e] >= 0) {
             return RUGA_OK;
         }
@@ -178,6 +183,7 @@ static ruga_status add_link(build* b, const ruga_hit* h, int curve, const double
         r->crease_along[e][first] = along[0];
         r->crease_along[e][1 - first] = along[1];
     }
+    facts->placed += along[1] - along[0];
     note_hit(b, g, curve);
     note_hit(b, h, curve);
     return RUGA_OK;
@@ -262,8 +268,12 @@ static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_cu
         r->curve[c].point = NULL;
         r->curve[c].vertex = NULL;
     }
-    for (int p = 0; p < paths->count; p++) {
-        RUGA_TRY(add_path(b, &paths->path[p]));
+    for (int pass = 0; pass < 2; pass++) { // cuts first: where a fold lies on one, it is cut
+        for (int p = 0; p < paths->count; p++) {
+            if ((r->curve[paths->path[p].curve].kind == RUGA_CREASE_CUT) == (pass == 0)) {
+                RUGA_TRY(add_path(b, &paths->path[p]));
+            }
+        }
     }
     decide_freedom(r);
     return sort_chords(r);

@@ -31,6 +31,8 @@ typedef struct ruga_chord {
 
 typedef struct ruga_curve_facts {
     double length; // m, of what was brought to the mesh
+    double placed; // m, of it that is a crease: not on the boundary
+    double left;   // m, of it that lies on other curves, or on itself, and is left to these
     int hits;      // vertices and embedded nodes
     bool bent;     // off straight by more than a 1e-6th of an edge
     bool meets;    // touches or crosses another curve, or itself

@@ -10,6 +10,7 @@
 #include "io/fold.h"
 #include "io/result.h"
 #include "io/scene_read.h"
+#include "mesh/transfer.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -84,6 +85,7 @@ static ruga_status add_lines(loader* l, const ruga_scene_crease* crease, const c
         def.points = points;
         def.point_count = curve->point_count;
         def.closed = curve->closed;
+        def.freedom = def.freedom == RUGA_FREEDOM_AUTO ? curve->freedom : def.freedom;
         def.kind = crease->cut ? RUGA_CREASE_CUT : curve->kind;
         def.assignment = ruga_assignment_letter(edge->assignment);
         def.rest = crease->rest.word ? crease->scale * ruga_crease_pattern_rest(edge) : def.rest;
@@ -178,6 +180,38 @@ done:
     return status;
 }
 
+// Curves of another surface would be laid down somewhere all the same.
+static ruga_status check_surface(const ruga_mesh* mesh, const ruga_curve* curve, const char* result) {
+    const double near = 0.01; // of the mesh's diagonal: the same surface in other triangles is nearer
+    double min[3], max[3];
+    int(*corner)[3] = NULL;
+    double(*weight)[3] = NULL;
+    ruga_status status = RUGA_OK;
+    ruga_mesh_bounds(mesh, min, max);
+    RUGA_TRY_DONE(RUGA_NEW(corner, curve->point_count));
+    RUGA_TRY_DONE(RUGA_NEW(weight, curve->point_count));
+    RUGA_TRY_DONE(ruga_mesh_locate(mesh, curve->point_count, curve->point[0], corner, weight));
+    for (int i = 0; i < curve->point_count; i++) {
+        const double* x = curve->point[i];
+        double off[3] = {-x[0], -x[1], -x[2]};
+        for (int k = 0; k < 3; k++) {
+            ruga_add_scaled(weight[i][k], mesh->position + 3 * (size_t)corner[i][k], off);
+        }
+        if (ruga_norm(off) > near * ruga_distance(min, max)) {
+            status = ruga_fail(
+                RUGA_BAD_INPUT,
+                "%s has another surface at rest: its ridge at (%.4g, %.4g, %.4g) is %.3g m away from "
+                "this mesh",
+                result, x[0], x[1], x[2], ruga_norm(off));
+            break;
+        }
+    }
+done:
+    ruga_release(corner);
+    ruga_release(weight);
+    return status;
+}
+
 static ruga_status add_ridges(loader* l, const ruga_scene_crease* crease, const char* directory) {
     ruga_status status = RUGA_OK;
     ruga_crease_pattern pattern = {0};
@@ -185,6 +219,9 @@ static ruga_status add_ridges(loader* l, const ruga_scene_crease* crease, const 
     char* path;
     RUGA_TRY_DONE(ruga_scene_path(directory, crease->result, l->pool, &path));
     RUGA_TRY_DONE(find_ridges(path, crease, l->scene->def.skin.poisson, &curves));
+    for (int c = 0; c < curves.count; c++) {
+        RUGA_TRY_DONE(check_surface(&l->scene->mesh, &curves.curve[c], crease->result));
+    }
     RUGA_TRY_DONE(ruga_crease_pattern_add_curves(&pattern, &curves));
     for (int c = 0, edge = 0; c < curves.count; c++) { // a label is a line of the pattern from here on
         ruga_curve* curve = &curves.curve[c];

@@ -26,7 +26,8 @@ static const double WELD = 1e-4; // of the drawing's size
 
 typedef struct style {
     ruga_svg_transform transform;
-    long stroke; // 0xrrggbb, -1 = none
+    long stroke;      // 0xrrggbb, -1 = none, -2 = of a colour that is not known
+    char unknown[32]; // its text
     double opacity, stroke_opacity;
     bool hidden;
 } style;
@@ -41,7 +42,8 @@ typedef struct reader {
     char* sheet; // text of <style>
     int sheet_length, sheet_capacity;
     bool in_sheet;
-    int without_stroke, white;
+    int without_stroke, white, unknown;
+    char first_unknown[32];
     ruga_assignment assignment; // of the shape at hand
     double angle;
 } reader;
@@ -111,14 +113,34 @@ static long read_colour(ruga_slice text, long before) {
                  {"maroon", 0x800000},
                  {"purple", 0x800080},
                  {"teal", 0x008080},
-                 {"olive", 0x808000}};
+                 {"olive", 0x808000},
+                 {"crimson", 0xdc143c},
+                 {"darkred", 0x8b0000},
+                 {"firebrick", 0xb22222},
+                 {"darkblue", 0x00008b},
+                 {"mediumblue", 0x0000cd},
+                 {"royalblue", 0x4169e1},
+                 {"dodgerblue", 0x1e90ff},
+                 {"darkgreen", 0x006400},
+                 {"forestgreen", 0x228b22},
+                 {"limegreen", 0x32cd32},
+                 {"gold", 0xffd700},
+                 {"orange", 0xffa500},
+                 {"violet", 0xee82ee},
+                 {"darkgray", 0xa9a9a9},
+                 {"darkgrey", 0xa9a9a9},
+                 {"dimgray", 0x696969},
+                 {"dimgrey", 0x696969}};
     long colour;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if (ruga_slice_is(text, names[i].name)) {
             return names[i].colour;
         }
     }
-    return text.length > 0 && (read_hex(text, &colour) || read_rgb(text, &colour)) ? colour : before;
+    if (text.length == 0 || ruga_slice_is(text, "inherit")) {
+        return before;
+    }
+    return read_hex(text, &colour) || read_rgb(text, &colour) ? colour : -2;
 }
 
 // By hue in steps of 60 degrees; greys by their brightness. COUNT = white, which is no line.
@@ -165,6 +187,8 @@ static double read_opacity(ruga_slice text, double before) {
 static void set_property(style* s, double outer_opacity, ruga_slice name, ruga_slice value) {
     if (ruga_slice_is(name, "stroke")) {
         s->stroke = read_colour(value, s->stroke);
+        (void)snprintf(s->unknown, sizeof s->unknown, "%.*s", (int)(value.length < 31 ? value.length : 31),
+                       value.at);
     } else if (ruga_slice_is(name, "opacity")) {
         s->opacity = outer_opacity * read_opacity(value, 1);
     } else if (ruga_slice_is(name, "stroke-opacity")) {
@@ -374,8 +398,11 @@ static bool is_one_of(ruga_slice name, const char* const* list) {
 }
 
 static ruga_status read_shape(reader* r, const style* s) {
-    r->without_stroke += s->stroke < 0;
     if (s->hidden || s->stroke < 0) {
+        r->without_stroke += s->stroke == -1;
+        if (s->stroke == -2 && r->unknown++ == 0) {
+            memcpy(r->first_unknown, s->unknown, sizeof r->first_unknown);
+        }
         return RUGA_OK;
     }
     r->assignment = assignment_of(s->stroke);
@@ -429,7 +456,7 @@ static ruga_status take_text(ruga_slice text, void* context) {
 
 static ruga_status read_drawing(reader* r, const ruga_text* text) {
     const ruga_xml_events events = {open_tag, close_tag, take_text, r};
-    r->depth = r->without_stroke = r->white = 0;
+    r->depth = r->without_stroke = r->white = r->unknown = 0;
     r->stack[0] = (style){.transform = {{1, 0, 0, 1, 0, 0}}, .stroke = -1, .opacity = 1, .stroke_opacity = 1};
     for (int i = 0; i < 2; i++) {
         r->low[i] = INFINITY;
@@ -453,6 +480,12 @@ static ruga_status read_pattern(reader* r, const ruga_text* text, double toleran
     if (r->without_stroke > 0) {
         RUGA_TRY(
             ruga_crease_pattern_note(pattern, "%d shapes without a stroke were left out", r->without_stroke));
+    }
+    if (r->unknown > 0) {
+        RUGA_TRY(ruga_crease_pattern_note(pattern,
+                                          "%d shapes were left out, as the colour of their stroke is not "
+                                          "known; the first is '%s': write #rrggbb",
+                                          r->unknown, r->first_unknown));
     }
     if (r->white > 0) {
         RUGA_TRY(ruga_crease_pattern_note(pattern, "%d white shapes were left out", r->white));

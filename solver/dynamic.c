@@ -405,7 +405,10 @@ void ruga_dynamic_start(ruga_dynamic* d, double* x, double* v) {
 static bool is_wild(const ruga_dynamic* d, double dt, const double* v) {
     double mean[3] = {0, 0, 0}, most = d->edge / dt, fastest = 0;
     for (int n = 0; n < d->nodes; n++) {
-        ruga_add_scaled(d->mass[n] / d->total_mass, v + 3 * (size_t)n, mean);
+        ruga_add_scaled(d->mass[n], v + 3 * (size_t)n, mean);
+    }
+    for (int i = 0; i < 3; i++) {
+        mean[i] /= d->total_mass;
     }
     for (int n = 0; n < d->nodes; n++) {
         double own[3];

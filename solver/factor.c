@@ -62,7 +62,8 @@ ruga_status ruga_factor_create(ruga_factor_kind kind, const ruga_sparse* lower, 
     if (lower->columns > 0 && kind == RUGA_FACTOR_CHOLESKY) {
         RUGA_TRY_DONE(ruga_cholesky_create(&f->pattern, node_count, node_start, last, &f->cholesky));
     } else if (lower->columns > 0) {
-        RUGA_TRY_DONE(ruga_ldl_create(&f->pattern, node_count, node_start, last, &f->ldl));
+        RUGA_TRY_DONE(ruga_ldl_create(&f->pattern, node_count, node_start, last,
+                                      kind == RUGA_FACTOR_LDL_SINGLE, &f->ldl));
     }
     *factor = f;
 done:
@@ -82,14 +83,24 @@ void ruga_factor_destroy(ruga_factor** factor) {
     }
 }
 
-ruga_status ruga_factor_numeric(ruga_factor* factor, const double* values, ruga_factor_info* info) {
+static ruga_status numeric(ruga_factor* factor, const double* values, bool in_single,
+                           ruga_factor_info* info) {
     if (factor->pattern.columns == 0) {
         *info = (ruga_factor_info){.success = true};
         return RUGA_OK;
     }
     RUGA_TRY(check_finite(&factor->pattern, values));
     return factor->kind == RUGA_FACTOR_CHOLESKY ? ruga_cholesky_numeric(factor->cholesky, values, info)
-                                                : ruga_ldl_numeric(factor->ldl, values, info);
+                                                : ruga_ldl_numeric(factor->ldl, values, in_single, info);
+}
+
+ruga_status ruga_factor_numeric(ruga_factor* factor, const double* values, ruga_factor_info* info) {
+    return numeric(factor, values, false, info);
+}
+
+ruga_status ruga_factor_numeric_single(ruga_factor* factor, const double* values, ruga_factor_info* info) {
+    RUGA_ASSERT(factor->kind == RUGA_FACTOR_LDL_SINGLE);
+    return numeric(factor, values, true, info);
 }
 
 ruga_status ruga_factor_solve(ruga_factor* factor, const double* b, double* x) {
@@ -108,7 +119,7 @@ ruga_status ruga_factor_solve_rough(ruga_factor* factor, const double* b, double
 }
 
 ruga_status ruga_factor_solve_absolute(ruga_factor* factor, const double* b, double* x) {
-    RUGA_ASSERT(factor->kind == RUGA_FACTOR_LDL);
+    RUGA_ASSERT(factor->kind != RUGA_FACTOR_CHOLESKY);
     return factor->pattern.columns == 0 ? RUGA_OK : ruga_ldl_solve_absolute(factor->ldl, b, x);
 }
 

@@ -12,6 +12,7 @@
 #include "solver/hinges.h"
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "core/vec3.h"
 
 #include <math.h>
@@ -19,13 +20,15 @@
 
 static const double MOST_AT_ONCE = 10 * RUGA_PI / 180; // rad
 enum { BLOCKS = RUGA_HINGE_NODES * RUGA_HINGE_NODES, MOST_PARTS = 1000 };
+enum { CHUNK = 32, BATCH = 512 }; // hinges: of a task; whose Hessians are held at a time, 1.3 MB
 
 void ruga_hinges_destroy(ruga_hinges** hinges) {
     ruga_hinges* h = *hinges;
     if (!h) {
         return;
     }
-    void* const owned[] = {h->near, h->rest, h->from, h->goal, h->set, h->flow, h->slot};
+    void* const owned[] = {h->near, h->rest, h->from,   h->goal,     h->set,
+                           h->flow, h->slot, h->energy, h->gradient, h->hessian};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
         ruga_release(owned[i]);
     }
@@ -41,6 +44,9 @@ static ruga_status fill(const ruga_creases* creases, const ruga_sparse* pattern,
     RUGA_TRY(RUGA_NEW_ZERO(h->set, h->segments));
     RUGA_TRY(RUGA_NEW_ZERO(h->flow, h->segments));
     RUGA_TRY(RUGA_NEW(h->slot, h->count));
+    RUGA_TRY(RUGA_NEW(h->energy, h->count));
+    RUGA_TRY(RUGA_NEW(h->gradient, h->count));
+    RUGA_TRY(RUGA_NEW(h->hessian, h->count < BATCH ? h->count : BATCH));
     memcpy(h->near, creases->drawn, (size_t)h->count * sizeof *h->near);
     memcpy(h->rest, creases->drawn, (size_t)h->count * sizeof *h->rest); // frame 0 is at rest as it is drawn
     for (int k = 0; k < h->count; k++) {
@@ -73,51 +79,94 @@ ruga_status ruga_hinges_create(const ruga_creases* creases, const ruga_sparse* p
 
 // ---- energy --------------------------------------------------------------------------------------------
 
-void ruga_hinges_evaluate(const ruga_hinges* h, const double* x, double* fold, double* chord,
-                          double* gradient, double* force_square) {
+// Hinges are worked out side by side, and added up in their order.
+typedef struct hinge_job {
+    ruga_hinges* h;
+    const double* x;
+    int first; // of the Hessians that are at hand
+    double clamp;
+} hinge_job;
+
+static void work_out_gradients(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const hinge_job* job = context;
+    ruga_hinges* h = job->h;
+    for (int k = begin; k < end; k++) {
+        h->energy[k] = ruga_hinge_energy(&h->creases->hinge[k], h->creases->stiffness[k], h->rest[k], job->x,
+                                         &h->near[k], 0, h->gradient[k], NULL);
+    }
+}
+
+void ruga_hinges_evaluate(ruga_hinges* h, const double* x, double* fold, double* chord, double* gradient,
+                          double* force_square) {
+    hinge_job job = {.h = h, .x = x};
+    ruga_parallel_for(h->count, CHUNK, work_out_gradients, &job);
     *fold = *chord = 0;
     for (int k = 0; k < h->count; k++) {
-        const ruga_hinge* hinge = &h->creases->hinge[k];
-        double own[RUGA_HINGE_NODES][3];
-        *(k < h->segments ? fold : chord) +=
-            ruga_hinge_energy(hinge, h->creases->stiffness[k], h->rest[k], x, &h->near[k], 0, own, NULL);
+        *(k < h->segments ? fold : chord) += h->energy[k];
         for (int a = 0; a < RUGA_HINGE_NODES; a++) {
-            *force_square += ruga_dot(own[a], own[a]);
+            *force_square += ruga_dot(h->gradient[k][a], h->gradient[k][a]);
             if (gradient) {
-                ruga_add_scaled(1, own[a], gradient + 3 * (size_t)hinge->node[a]);
+                ruga_add_scaled(1, h->gradient[k][a], gradient + 3 * (size_t)h->creases->hinge[k].node[a]);
             }
         }
     }
 }
 
-void ruga_hinges_add_hessian(const ruga_hinges* h, const double* x, double clamp, double* value) {
-    double hessian[RUGA_HINGE_UNKNOWNS][RUGA_HINGE_UNKNOWNS];
-    for (int k = 0; k < h->count; k++) {
-        const ruga_hinge* hinge = &h->creases->hinge[k];
-        double stiffness = h->creases->stiffness[k];
-        if (stiffness == 0) {
-            continue;
+static void work_out_hessians(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const hinge_job* job = context;
+    const ruga_hinges* h = job->h;
+    for (int i = begin; i < end; i++) {
+        int k = job->first + i;
+        if (h->creases->stiffness[k] > 0) {
+            (void)ruga_hinge_energy(&h->creases->hinge[k], h->creases->stiffness[k], h->rest[k], job->x,
+                                    &h->near[k], job->clamp, NULL, h->hessian[i]);
         }
-        (void)ruga_hinge_energy(hinge, stiffness, h->rest[k], x, &h->near[k], clamp, NULL, hessian);
-        for (int b = 0; b < BLOCKS; b++) {
-            int i = b / RUGA_HINGE_NODES, j = b % RUGA_HINGE_NODES, row = hinge->node[i],
-                column = hinge->node[j];
-            for (int c = 0; c < 3 && row >= column; c++) {
-                // Column c of a block on the diagonal begins there: it lacks the first c entries.
-                const int* start = h->pattern->start + 3 * (size_t)column;
-                double* to = value + h->slot[k][b] + (start[c] - start[0]) - c;
-                for (int r = row == column ? c : 0; r < 3; r++) {
-                    to[r] += hessian[3 * i + r][3 * j + c];
-                }
+    }
+}
+
+static void add_blocks(const ruga_hinges* h, int k, double hessian[RUGA_HINGE_UNKNOWNS][RUGA_HINGE_UNKNOWNS],
+                       double* value) {
+    const int* node = h->creases->hinge[k].node;
+    for (int b = 0; b < BLOCKS; b++) {
+        int i = b / RUGA_HINGE_NODES, j = b % RUGA_HINGE_NODES, row = node[i], column = node[j];
+        for (int c = 0; c < 3 && row >= column; c++) {
+            // Column c of a block on the diagonal begins there: it lacks the first c entries.
+            const int* start = h->pattern->start + 3 * (size_t)column;
+            double* to = value + h->slot[k][b] + (start[c] - start[0]) - c;
+            for (int r = row == column ? c : 0; r < 3; r++) {
+                to[r] += hessian[3 * i + r][3 * j + c];
             }
         }
+    }
+}
+
+void ruga_hinges_add_hessian(ruga_hinges* h, const double* x, double clamp, double* value) {
+    hinge_job job = {.h = h, .x = x, .clamp = clamp};
+    for (; job.first < h->count; job.first += BATCH) {
+        int batch = h->count - job.first < BATCH ? h->count - job.first : BATCH;
+        ruga_parallel_for(batch, CHUNK, work_out_hessians, &job);
+        for (int i = 0; i < batch; i++) {
+            if (h->creases->stiffness[job.first + i] > 0) {
+                add_blocks(h, job.first + i, h->hessian[i], value);
+            }
+        }
+    }
+}
+
+static void follow_angles(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const hinge_job* job = context;
+    for (int k = begin; k < end; k++) {
+        double* near = &job->h->near[k];
+        *near = ruga_hinge_measure(&job->h->creases->hinge[k], job->x, near, NULL);
     }
 }
 
 void ruga_hinges_follow(ruga_hinges* h, const double* x) {
-    for (int k = 0; k < h->count; k++) {
-        h->near[k] = ruga_hinge_measure(&h->creases->hinge[k], x, &h->near[k], NULL);
-    }
+    hinge_job job = {.h = h, .x = x};
+    ruga_parallel_for(h->count, CHUNK, follow_angles, &job);
 }
 
 // ---- rest angles ---------------------------------------------------------------------------------------

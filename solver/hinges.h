@@ -21,6 +21,9 @@ typedef struct ruga_hinges {
     double* flow; // [segments] rad, all plastic turning so far, either way
     int (*slot)[RUGA_HINGE_NODES *
                 RUGA_HINGE_NODES]; // [count] of the first entry of a block, -1 = above the diagonal
+    double* energy; // [count] work: of each hinge, its gradient, and Hessians of some at a time
+    double (*gradient)[RUGA_HINGE_NODES][3];
+    double (*hessian)[RUGA_HINGE_UNKNOWNS][RUGA_HINGE_UNKNOWNS];
 } ruga_hinges;
 
 ruga_status ruga_hinges_create(const ruga_creases* creases, const ruga_sparse* pattern, ruga_hinges** hinges);
@@ -28,10 +31,10 @@ void ruga_hinges_destroy(ruga_hinges** hinges);
 
 // Energy in J of folds and of auxiliary chords at x [nodes][3]. The gradient is ADDED where not NULL;
 // force_square likewise, with the squared nodal forces of single hinges.
-void ruga_hinges_evaluate(const ruga_hinges* hinges, const double* x, double* fold, double* chord,
+void ruga_hinges_evaluate(ruga_hinges* hinges, const double* x, double* fold, double* chord,
                           double* gradient, double* force_square);
 // ADDS the Hessian to the values of the pattern; clamp as in crease/hinge.h.
-void ruga_hinges_add_hessian(const ruga_hinges* hinges, const double* x, double clamp, double* value);
+void ruga_hinges_add_hessian(ruga_hinges* hinges, const double* x, double clamp, double* value);
 // Follows the angles to x.
 void ruga_hinges_follow(ruga_hinges* hinges, const double* x);
 

@@ -9,7 +9,7 @@
 // Independent subtrees are tasks with memory of their own: an index list and panels of L, which only grow,
 // and a stack of update matrices. Which task a front belongs to depends on the matrix alone, and so do all
 // sums: the bits are the same for any number of threads.
-#include "solver/ldl.h"
+#include "solver/ldl_front.h"
 
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -28,7 +28,6 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
         ruga_release(f->memory[t].factor);
         ruga_release(f->memory[t].index);
         ruga_release(f->memory[t].stack);
-        ruga_release(f->memory[t].work);
     }
     ruga_release(f->memory);
     ruga_ldl_symbolic_clear(&f->symbolic);
@@ -99,13 +98,14 @@ static ruga_status number_top_steps(ruga_ldl* f) {
 }
 
 ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start, const bool* last,
-                            ruga_ldl** ldl) {
+                            bool single, ruga_ldl** ldl) {
     ruga_status status = RUGA_OK;
     int n = lower->columns;
     ruga_ldl* f = NULL;
     *ldl = NULL;
     RUGA_TRY(RUGA_NEW_ZERO(f, 1));
     RUGA_TRY_DONE(ruga_ldl_analyse(lower, node_count, node_start, last, &f->symbolic));
+    f->single = single;
     f->matrix = *lower;
     f->matrix.value = NULL;
     RUGA_TRY_DONE(RUGA_NEW(f->matrix.value, lower->start[n]));
@@ -140,7 +140,7 @@ size_t ruga_ldl_bytes(const ruga_ldl* f) {
     bytes += ((size_t)f->gather_capacity + tasks * top) * sizeof(double) + (n + top) * sizeof(int);
     for (int t = 0; t <= f->symbolic.task_count; t++) {
         const task_memory* m = &f->memory[t];
-        bytes += (m->factor_capacity + m->stack_capacity + m->work_capacity) * sizeof(double) +
+        bytes += m->factor_capacity * (f->single ? sizeof(float) : sizeof(double)) + m->stack_capacity +
                  m->index_capacity * sizeof(int);
     }
     return bytes;
@@ -214,230 +214,8 @@ ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, si
     return RUGA_OK;
 }
 
-// A front while it is made.
-typedef struct assembly {
-    ruga_ldl* ldl;
-    task_memory* memory;
-    int s, own, late, below; // pivots of its own, delayed ones of children, rows that stay
-    ruga_front front;
-    size_t base; // of the stack, under the children's updates
-    double* update;
-} assembly;
-
-static double* delayed_of(const ruga_ldl* f, int c, const double** update, int* late, int* below) {
-    const front_record* r = &f->front[c];
-    double* begin = f->memory[r->task].stack + r->update;
-    *update = begin;
-    *below = r->rows - r->full;
-    *late = r->full - r->eliminated;
-    return begin + ruga_update_size(*below);
-}
-
-static ruga_status reserve_front(assembly* a) {
-    ruga_ldl* f = a->ldl;
-    const ruga_ldl_symbolic* s = &f->symbolic;
-    task_memory* m = a->memory;
-    a->base = m->stack_used;
-    for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
-        a->late += f->front[c].full - f->front[c].eliminated;
-        if (f->front[c].task == f->front[a->s].task && f->front[c].update < a->base) {
-            a->base = f->front[c].update;
-        }
-    }
-    a->own = s->pivot[a->s + 1] - s->pivot[a->s];
-    a->below = (int)(s->row_start[a->s + 1] - s->row_start[a->s]);
-    size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below;
-    size_t update = ruga_update_size(a->below);
-    RUGA_TRY(ruga_ldl_make_room((void**)&m->factor, &m->factor_capacity, m->factor_used + full * (rows + 2),
-                                sizeof(double)));
-    RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used + rows, sizeof(int)));
-    RUGA_TRY(
-        ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, m->stack_used + update, sizeof(double)));
-    size_t tiles = s->top[a->s] && a->below ? (size_t)ruga_chunk_count(a->below, RUGA_FRONT_TILE) : 1;
-    size_t work = tiles * RUGA_FRONT_TILE * full, shared = ruga_front_shared_work((int)full);
-    work = 3 * full + (s->top[a->s] && shared > work ? shared : work);
-    RUGA_TRY(ruga_ldl_make_room((void**)&m->work, &m->work_capacity, work, sizeof(double)));
-    a->update = m->stack + m->stack_used;
-    a->front = (ruga_front){.rows = (int)rows, .full = (int)full};
-    a->front.a = m->factor + m->factor_used;
-    a->front.index = m->index + m->index_used;
-    a->front.pivot = m->work;
-    a->front.peak = m->work + 2 * full;
-    a->front.work = m->work + 3 * full;
-    a->front.shared = s->top[a->s];
-    a->front.must_finish = s->parent[a->s] < 0;
-    memset(a->front.a, 0, full * rows * sizeof(double));
-    memset(a->update, 0, update * sizeof(double));
-    memset(a->front.peak, 0, full * sizeof(double));
-    return RUGA_OK;
-}
-
-static void assemble_matrix(assembly* a) {
-    const ruga_ldl_symbolic* s = &a->ldl->symbolic;
-    size_t rows = (size_t)a->front.rows;
-    for (int k = s->entry_start[a->s]; k < s->entry_start[a->s + 1]; k++) {
-        int i = s->entry_row[k], j = s->entry_column[k];
-        a->front.a[(size_t)j * rows + (size_t)(i < a->own ? i : i + a->late)] +=
-            a->ldl->matrix.value[s->entry[k]];
-    }
-    for (int j = 0; j < a->own; j++) {
-        a->front.peak[j] = fabs(a->front.a[(size_t)j * rows + (size_t)j]);
-        a->front.index[j] = s->pivot[a->s] + j;
-    }
-    for (int i = 0; i < a->below; i++) {
-        a->front.index[a->own + a->late + i] = s->row[s->row_start[a->s] + (size_t)i];
-    }
-}
-
-// Adds child c's update matrix: rows and columns at place[], those from `own` on into our own update.
-static void add_update(assembly* a, const int* place, int below, const double* update) {
-    int split = 0;
-    while (split < below && place[split] < a->own) {
-        split++;
-    }
-    for (int j = 0; j < below; j++) {
-        const double* from = update + ruga_update_column(below, j);
-        if (j < split) {
-            double* to = a->front.a + (size_t)place[j] * (size_t)a->front.rows;
-            a->front.peak[place[j]] += fabs(from[j]);
-            for (int i = j; i < split; i++) {
-                to[place[i]] += from[i];
-            }
-            for (int i = split; i < below; i++) {
-                to[place[i] + a->late] += from[i];
-            }
-        } else {
-            double* to = a->update + ruga_update_column(a->below, place[j] - a->own);
-            for (int i = j; i < below; i++) {
-                to[place[i] - a->own] += from[i];
-            }
-        }
-    }
-}
-
-// Places child c's delayed columns at [column, column + late) of our front.
-static void add_delayed(assembly* a, int c, int column, const int* place, int late, int below,
-                        const double* delayed) {
-    const front_record* r = &a->ldl->front[c];
-    const int* index = a->ldl->memory[r->task].index + r->index + r->eliminated;
-    size_t rows = (size_t)a->front.rows, height = (size_t)(late + below);
-    for (int q = 0; q < late; q++) {
-        const double* from = delayed + (size_t)q * height;
-        double* to = a->front.a + (size_t)(column + q) * rows;
-        for (int i = q; i < late; i++) {
-            to[column + i] = from[i];
-        }
-        for (int i = 0; i < below; i++) {
-            if (place[i] < a->own) {
-                a->front.a[(size_t)place[i] * rows + (size_t)(column + q)] = from[late + i];
-            } else {
-                to[place[i] + a->late] = from[late + i];
-            }
-        }
-        a->front.peak[column + q] = delayed[(size_t)late * height + (size_t)q];
-        a->front.index[column + q] = index[q];
-    }
-}
-
-static void assemble_children(assembly* a) {
-    const ruga_ldl* f = a->ldl;
-    int column = a->own;
-    for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
-        const double* update;
-        int late, below;
-        const double* delayed = delayed_of(f, c, &update, &late, &below);
-        const int* place = f->symbolic.place + f->symbolic.row_start[c];
-        add_update(a, place, below, update);
-        add_delayed(a, c, column, place, late, below, delayed);
-        column += late;
-    }
-}
-
-typedef struct update_job {
-    const ruga_front* front;
-    double *work, *update; // work: a tile for each chunk
-} update_job;
-
-static void update_tile(int begin, int end, int chunk, void* context) {
-    const update_job* job = context;
-    double* work = job->work + (size_t)chunk * RUGA_FRONT_TILE * (size_t)job->front->full;
-    ruga_front_update(job->front, begin, end, work, job->update);
-}
-
-// The fronts at the top are few and large: their tiles are shared out. Below, tasks run side by side.
-static void update_below(assembly* a) {
-    if (a->ldl->symbolic.top[a->s]) {
-        update_job job = {&a->front, a->front.work, a->update};
-        ruga_parallel_for(a->below, RUGA_FRONT_TILE, update_tile, &job);
-    } else {
-        ruga_front_update(&a->front, 0, a->below, a->front.work, a->update);
-    }
-}
-
-// Hands on the update matrix and the delayed columns, on the stack in the children's place, and keeps L.
-static ruga_status store_front(assembly* a) {
-    task_memory* m = a->memory;
-    const ruga_front* f = &a->front;
-    front_record* record = &a->ldl->front[a->s];
-    size_t update = ruga_update_size(a->below), rows = (size_t)f->rows;
-    size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, height = rows - done;
-    memmove(m->stack + a->base, a->update, update * sizeof(double));
-    size_t used = a->base + update + late * (height + 1);
-    RUGA_TRY(ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, used, sizeof(double)));
-    double* delayed = m->stack + a->base + update;
-    for (size_t q = 0; q < late; q++) {
-        memcpy(delayed + q * height, f->a + (done + q) * rows + done, height * sizeof(double));
-        delayed[late * height + q] = f->peak[done + q];
-    }
-    double* inverse = m->factor + m->factor_used + done * rows;
-    memcpy(inverse, f->pivot, 2 * done * sizeof(double));
-    *record = (front_record){.factor = m->factor_used,
-                             .index = m->index_used,
-                             .update = a->base,
-                             .task = record->task,
-                             .rows = f->rows,
-                             .full = f->full,
-                             .eliminated = f->eliminated};
-    m->factor_used += done * (rows + 2);
-    m->index_used += rows;
-    m->stack_used = used;
-    return RUGA_OK;
-}
-
-// D becomes D^-1; the inverse of a zero pivot is zero, so that its unknown is zero in every solution.
-static void invert_pivots(ruga_front* f) {
-    for (int k = 0; k < f->eliminated; k++) {
-        double* d = f->pivot + 2 * (size_t)k;
-        if (d[1] == 0) {
-            d[0] = d[0] == 0 ? 0 : 1 / d[0];
-            continue;
-        }
-        double a = d[0], b = d[1], c = d[2], determinant = a * c - b * b;
-        d[0] = c / determinant;
-        d[1] = -b / determinant;
-        d[2] = a / determinant;
-        k++;
-    }
-}
-
 static ruga_status factor_front(ruga_ldl* f, int s) {
-    assembly a = {.ldl = f, .memory = &f->memory[f->front[s].task], .s = s};
-    task_memory* m = a.memory;
-    RUGA_TRY(reserve_front(&a));
-    assemble_matrix(&a);
-    assemble_children(&a);
-    ruga_front_factor(&a.front);
-    if (a.below > 0 && a.front.eliminated > 0) {
-        update_below(&a);
-    }
-    double w = a.front.eliminated, r = a.front.rows - w;
-    m->entries += w * (w + 1) / 2 + w * r;
-    m->flops += w * r * r + w * w * r + w * w * w / 3;
-    m->positive += a.front.positive;
-    m->negative += a.front.negative;
-    m->zero += a.front.zero;
-    invert_pivots(&a.front);
-    return store_front(&a);
+    return f->in_single ? ruga_ldl_factor_front_single(f, s) : ruga_ldl_factor_front(f, s);
 }
 
 static void factor_tasks(int begin, int end, int chunk, void* context) {
@@ -477,18 +255,19 @@ static ruga_status plan_tasks(ruga_ldl* f) {
                 base = f->front[c].update;
             }
         }
-        size_t peak = m->stack_used + update;
+        size_t peak = m->stack_used + ruga_front_size(s->top[k], own, below);
         f->front[k].update = base;
         m->stack_used = base + update;
-        m->factor_used += own * (own + below + 2);
+        m->factor_used += ruga_ldl_stored_size((int)(own + below), (int)own);
         m->index_used += own + below;
         m->stack_peak = peak > m->stack_peak ? peak : m->stack_peak;
     }
     for (int t = 0; t <= s->task_count; t++) {
         task_memory* m = &f->memory[t];
-        RUGA_TRY(ruga_ldl_make_room((void**)&m->factor, &m->factor_capacity, m->factor_used, sizeof(double)));
+        RUGA_TRY(ruga_ldl_make_room(&m->factor, &m->factor_capacity, m->factor_used,
+                                    f->single ? sizeof(float) : sizeof(double)));
         RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used, sizeof(int)));
-        RUGA_TRY(ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, m->stack_peak, sizeof(double)));
+        RUGA_TRY(ruga_ldl_make_room(&m->stack, &m->stack_capacity, m->stack_peak * sizeof(double), 1));
     }
     return RUGA_OK;
 }
@@ -516,15 +295,18 @@ static ruga_status finish(ruga_ldl* f, ruga_factor_info* info) {
     info->perturbed = info->zero;
     info->success = info->zero == 0;
     for (int k = 0; k < f->symbolic.count; k++) {
-        f->widest = f->front[k].rows > f->widest ? f->front[k].rows : f->widest;
+        int rows = RUGA_LDL_TILE * ruga_ldl_tiles(f->front[k].rows);
+        f->widest = rows > f->widest ? rows : f->widest;
     }
     RUGA_TRY(RUGA_RESERVE(f->gather, f->gather_capacity, (f->symbolic.task_count + 1) * f->widest));
     f->ready = true;
     return RUGA_OK;
 }
 
-ruga_status ruga_ldl_numeric(ruga_ldl* f, const double* values, ruga_factor_info* info) {
-    f->ready = f->single_ready = false;
+ruga_status ruga_ldl_numeric(ruga_ldl* f, const double* values, bool in_single, ruga_factor_info* info) {
+    RUGA_ASSERT(f->single || !in_single);
+    f->ready = false;
+    f->in_single = in_single;
     scale_matrix(f, values);
     if (!f->planned) {
         start_tasks(f);

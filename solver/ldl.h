@@ -40,28 +40,8 @@ ruga_status ruga_ldl_analyse(const ruga_sparse* lower, int node_count, const int
 void ruga_ldl_symbolic_clear(ruga_ldl_symbolic* symbolic);
 size_t ruga_ldl_symbolic_bytes(const ruga_ldl_symbolic* symbolic);
 
-// A dense front: columns [0, full) are fully summed, of which the first `eliminated` become pivots.
-enum { RUGA_FRONT_TILE = 96 };
-typedef struct ruga_front {
-    int rows, full;
-    double* a;        // [full][rows] columns; the lower triangle counts
-    int* index;       // [rows] step of each row, permuted along with them
-    double* pivot;    // [full][2] D: (d, 0), or (d11, d21), (d22, 0)
-    double* peak;     // [full] the largest size that the diagonal entry ever had: the measure of round-off
-    double* work;     // [RUGA_FRONT_TILE * full], shared: also [ruga_front_shared_work(full)]
-    bool shared;      // at the top: tiles are shared out to threads
-    bool must_finish; // a root: no parent takes pivots that are not stable
-    int eliminated, positive, negative, zero;
-} ruga_front;
-
-// Pivots are taken in blocks; tiles of columns that wait for a block have a work space each.
-enum { RUGA_FRONT_BLOCK = 64 };
-static inline size_t ruga_front_shared_work(int full) {
-    return (size_t)(full / RUGA_FRONT_TILE + 1) * RUGA_FRONT_TILE * RUGA_FRONT_BLOCK;
-}
-
-// Eliminates as many of the fully summed columns as stable pivots are found for.
-void ruga_front_factor(ruga_front* front);
+// Tiles of columns of a front, and the blocks in which pivots are taken.
+enum { RUGA_FRONT_TILE = 96, RUGA_FRONT_BLOCK = 64 };
 
 // Update matrices [rows]^2 keep their lower triangle in tiles of columns, each without the rows above its
 // first: column j has its row i at ruga_update_column(rows, j) + i. Half the memory of a square.
@@ -75,20 +55,45 @@ static inline ptrdiff_t ruga_update_column(int rows, int column) {
     return tile + (column - first) * (n - first) - first;
 }
 
-// update -= L2 D L2^T, columns [begin, end), with `work` as in the front; begin is the first of a tile.
-void ruga_front_update(const ruga_front* front, int begin, int end, double* work, double* update);
+// Work space of a front: a tile of L D, or one for each where tiles are shared out.
+static inline size_t ruga_front_work(bool shared, size_t full, size_t below) {
+    size_t one = RUGA_FRONT_TILE * full, tiles = (below + RUGA_FRONT_TILE - 1) / RUGA_FRONT_TILE;
+    size_t blocks = (full / RUGA_FRONT_TILE + 1) * RUGA_FRONT_TILE * RUGA_FRONT_BLOCK;
+    size_t most = shared && tiles * one > one ? tiles * one : one;
+    return shared && blocks > most ? blocks : most;
+}
+// All that a front takes on the stack while it is made: its update matrix, itself, pivots, peaks and work.
+static inline size_t ruga_front_size(bool shared, size_t full, size_t below) {
+    return ruga_update_size((int)below) + full * (full + below + 3) + ruga_front_work(shared, full, below);
+}
+
+// L of a front is stored in tiles of 4 x 4, by columns: strips of 4 columns one after another, each from the
+// tile on the diagonal down, filled up with zeros. So a solve reads it in one stream. Behind it D^-1
+// [eliminated][2].
+enum { RUGA_LDL_TILE = 4 };
+static inline int ruga_ldl_tiles(int count) {
+    return (count + RUGA_LDL_TILE - 1) / RUGA_LDL_TILE;
+}
+// Where tile (row, strip) of a front with `high` tiles of rows stands, row >= strip.
+static inline size_t ruga_ldl_tile(int high, int strip, int row) {
+    size_t s = (size_t)strip, before = s * (size_t)high - (s > 0 ? s * (s - 1) / 2 : 0);
+    return RUGA_LDL_TILE * RUGA_LDL_TILE * (before + (size_t)(row - strip));
+}
+static inline size_t ruga_ldl_stored_size(int rows, int eliminated) {
+    int strips = ruga_ldl_tiles(eliminated);
+    return ruga_ldl_tile(ruga_ldl_tiles(rows), strips, strips) + 2 * (size_t)eliminated;
+}
 
 // Storage of a task. Places in it are kept as offsets, since it moves when delayed pivots make it grow.
 typedef struct task_memory {
-    double* factor; // per front: panel [eliminated][rows], then D^-1 [eliminated][2]
+    void* factor; // double or float, per front: ruga_ldl_stored_size
     size_t factor_used, factor_capacity;
     int* index; // per front: steps of its rows, pivots first
     size_t index_used, index_capacity;
-    double* stack; // per front: update of `below` rows, delayed [late][late + below], peak [late]
-    size_t stack_used, stack_peak, stack_capacity;
-    double* work; // pivots and peaks of one front, tile of L D
-    size_t work_capacity;
-    float* single; // the panels again, at the same places: in the stack, which is idle during solves
+    // double or float, as the work is done, per front: update of `below` rows, delayed [late][late + below],
+    // peak [late]; above them the front that is made.
+    void* stack;
+    size_t stack_used, stack_peak, stack_capacity; // capacity in bytes
     int positive, negative, zero;
     double entries, flops;
     ruga_status status;
@@ -108,8 +113,9 @@ typedef struct ruga_ldl {
     int* sibling;        // [count]
     front_record* front; // [count]
     task_memory* memory; // [task_count + 1], the last one for the top
-    bool planned, ready, single_ready;
-    int widest;             // rows of the largest front
+    bool single;         // L is stored in single precision
+    bool planned, in_single, ready;
+    int widest;             // rows of the largest front, in whole tiles
     double *load, *answer;  // [n] scaled, by unknown; by step
     double *defect, *guess; // [n] scaled, by unknown
     int* top_place;         // [n] number of a step that a top front eliminates, -1 = none
@@ -122,11 +128,12 @@ typedef struct ruga_ldl {
 
 // `lower` stays the caller's and must outlive the factor. The values given later must be finite.
 ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start, const bool* last,
-                            ruga_ldl** ldl);
+                            bool single, ruga_ldl** ldl);
 void ruga_ldl_destroy(ruga_ldl** ldl);
 // Room for `count` elements of `size` bytes; what grows, grows by 3 % at least.
 ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, size_t size);
-ruga_status ruga_ldl_numeric(ruga_ldl* ldl, const double* values, ruga_factor_info* info);
+// `in_single`: the work is done in single precision, where L is stored so.
+ruga_status ruga_ldl_numeric(ruga_ldl* ldl, const double* values, bool in_single, ruga_factor_info* info);
 ruga_status ruga_ldl_solve(ruga_ldl* ldl, const double* b, double* x);
 ruga_status ruga_ldl_solve_absolute(ruga_ldl* ldl, const double* b, double* x);
 ruga_status ruga_ldl_solve_rough(ruga_ldl* ldl, const double* b, double* x);

@@ -11,7 +11,7 @@
 // Work goes by blocks of 64 columns, made of blocks of 8 within which columns are updated one by one, so that
 // nearly all of it is matrix products. Only the lower triangle counts; tiles on the diagonal also write
 // above it, where nothing is read.
-#include "solver/ldl.h"
+#include "solver/ldl_front.h"
 
 #include "core/parallel.h"
 
@@ -22,14 +22,14 @@ enum { INNER = 8, OUTER = RUGA_FRONT_BLOCK };
 
 static const double threshold = 0.01;
 // A pivot below this share of the largest value that its diagonal ever had is what cancellation left.
-static const double round_off = 1e-14;
+static const double round_off = sizeof(real) == sizeof(double) ? 1e-14 : 1e-5;
 
-static double* at(const ruga_front* f, int row, int column) {
+static real* at(const ruga_front* f, int row, int column) {
     return f->a + (size_t)column * f->rows + row;
 }
 
-static void swap_doubles(double* a, double* b) {
-    double t = *a;
+static void swap_reals(real* a, real* b) {
+    real t = *a;
     *a = *b;
     *b = t;
 }
@@ -39,11 +39,11 @@ static void exchange(ruga_front* f, int p, int q) {
     if (p == q) {
         return;
     }
-    cblas_dswap(p, at(f, p, 0), f->rows, at(f, q, 0), f->rows);
-    cblas_dswap(q - p - 1, at(f, p + 1, p), 1, at(f, q, p + 1), f->rows);
-    cblas_dswap(f->rows - q - 1, at(f, q + 1, p), 1, at(f, q + 1, q), 1);
-    swap_doubles(at(f, p, p), at(f, q, q));
-    swap_doubles(&f->peak[p], &f->peak[q]);
+    RUGA_BLAS(swap)(p, at(f, p, 0), f->rows, at(f, q, 0), f->rows);
+    RUGA_BLAS(swap)(q - p - 1, at(f, p + 1, p), 1, at(f, q, p + 1), f->rows);
+    RUGA_BLAS(swap)(f->rows - q - 1, at(f, q + 1, p), 1, at(f, q + 1, q), 1);
+    swap_reals(at(f, p, p), at(f, q, q));
+    swap_reals(&f->peak[p], &f->peak[q]);
     int index = f->index[p];
     f->index[p] = f->index[q];
     f->index[q] = index;
@@ -67,7 +67,7 @@ static double largest_off_diagonal(const ruga_front* f, int begin, int j, int sk
         if (count <= 0) {
             continue;
         }
-        int i = range[k][0] + (int)cblas_idamax(count, at(f, range[k][0], j), 1);
+        int i = range[k][0] + (int)RUGA_BLAS_IAMAX(count, at(f, range[k][0], j), 1);
         if (fabs(*at(f, i, j)) > largest) {
             largest = fabs(*at(f, i, j));
             *where = i;
@@ -110,26 +110,27 @@ static int find_pivot(const ruga_front* f, int begin, int end, int j, int* partn
 
 static void note_peaks(ruga_front* f, int begin, int end) {
     for (int j = begin; j < end; j++) {
-        f->peak[j] = fmax(f->peak[j], fabs(*at(f, j, j)));
+        real size = (real)fabs(*at(f, j, j));
+        f->peak[j] = size > f->peak[j] ? size : f->peak[j];
     }
 }
 
 // Column k becomes a column of L, and columns (k, end) are updated.
 static void eliminate_one(ruga_front* f, int end) {
     int k = f->eliminated, below = f->rows - k - 1, columns = end - k - 1;
-    double d = *at(f, k, k);
+    real d = *at(f, k, k);
     f->pivot[2 * k] = d;
     f->pivot[2 * k + 1] = 0;
-    double* l = at(f, k + 1, k);
+    real* l = at(f, k + 1, k);
     f->eliminated++;
     f->positive += d > 0;
     f->negative += d < 0;
     for (int i = 0; i < columns; i++) {
         f->work[i] = l[i];
     }
-    cblas_dscal(below, 1 / d, l, 1);
+    RUGA_BLAS(scal)(below, 1 / d, l, 1);
     if (columns > 0) {
-        cblas_dger(CblasColMajor, below, columns, -1, l, 1, f->work, 1, at(f, k + 1, k + 1), f->rows);
+        RUGA_BLAS(ger)(CblasColMajor, below, columns, -1, l, 1, f->work, 1, at(f, k + 1, k + 1), f->rows);
     }
     note_peaks(f, k + 1, end);
 }
@@ -145,13 +146,13 @@ static void eliminate_zero(ruga_front* f) {
 
 static void eliminate_pair(ruga_front* f, int end) {
     int k = f->eliminated, below = f->rows - k - 2, columns = end - k - 2;
-    double a = *at(f, k, k), b = *at(f, k + 1, k), c = *at(f, k + 1, k + 1);
-    double determinant = a * c - b * b;
+    real a = *at(f, k, k), b = *at(f, k + 1, k), c = *at(f, k + 1, k + 1);
+    double determinant = (double)a * c - (double)b * b;
     f->pivot[2 * k] = a;
     f->pivot[2 * k + 1] = b;
     f->pivot[2 * k + 2] = c;
     f->pivot[2 * k + 3] = 0;
-    double *l = at(f, k + 2, k), *m = at(f, k + 2, k + 1);
+    real *l = at(f, k + 2, k), *m = at(f, k + 2, k + 1);
     *at(f, k + 1, k) = 0; // the unit lower triangle has no entry inside D
     for (int i = 0; i < columns; i++) {
         f->work[i] = l[i];
@@ -159,12 +160,13 @@ static void eliminate_pair(ruga_front* f, int end) {
     }
     for (int i = 0; i < below; i++) {
         double x = l[i], y = m[i];
-        l[i] = (c * x - b * y) / determinant;
-        m[i] = (a * y - b * x) / determinant;
+        l[i] = (real)((c * x - b * y) / determinant);
+        m[i] = (real)((a * y - b * x) / determinant);
     }
     if (columns > 0) {
-        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, below, columns, 2, -1, l, f->rows, f->work,
-                    columns, 1, at(f, k + 2, k + 2), f->rows);
+        RUGA_BLAS(gemm)
+        (CblasColMajor, CblasNoTrans, CblasTrans, below, columns, 2, -1, l, f->rows, f->work, columns, 1,
+         at(f, k + 2, k + 2), f->rows);
     }
     f->eliminated += 2;
     f->positive += determinant < 0 ? 1 : a > 0 ? 2 : 0;
@@ -195,11 +197,11 @@ static void eliminate_columns(ruga_front* f, int end) {
 }
 
 // w = (L D)^T of rows [begin, end) and pivots [first, last): column p of w is w[p * (end - begin)].
-static void multiply_pivots(const ruga_front* f, int begin, int end, int first, int last, double* w) {
+static void multiply_pivots(const ruga_front* f, int begin, int end, int first, int last, real* w) {
     int count = end - begin;
     for (int p = first; p < last; p++) {
-        double d = f->pivot[2 * p], e = f->pivot[2 * p + 1];
-        const double* l = at(f, begin, p);
+        real d = f->pivot[2 * p], e = f->pivot[2 * p + 1];
+        const real* l = at(f, begin, p);
         if (e == 0) {
             for (int i = 0; i < count; i++) {
                 w[i] = d * l[i];
@@ -207,8 +209,8 @@ static void multiply_pivots(const ruga_front* f, int begin, int end, int first, 
             w += count;
             continue;
         }
-        const double* m = at(f, begin, p + 1);
-        double c = f->pivot[2 * p + 2];
+        const real* m = at(f, begin, p + 1);
+        real c = f->pivot[2 * p + 2];
         for (int i = 0; i < count; i++) {
             w[i] = d * l[i] + e * m[i];
             w[count + i] = e * l[i] + c * m[i];
@@ -229,10 +231,11 @@ static void update_tile(int tile, int stop, int chunk, void* context) {
     const columns_job* job = context;
     ruga_front* f = job->front;
     int t = job->begin + tile, end = job->begin + stop, pivots = f->eliminated - job->first;
-    double* work = f->work + (job->shared ? (size_t)chunk * RUGA_FRONT_TILE * OUTER : 0);
+    real* work = f->work + (job->shared ? (size_t)chunk * RUGA_FRONT_TILE * OUTER : 0);
     multiply_pivots(f, t, end, job->first, f->eliminated, work);
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, f->rows - t, end - t, pivots, -1,
-                at(f, t, job->first), f->rows, work, end - t, 1, at(f, t, t), f->rows);
+    RUGA_BLAS(gemm)
+    (CblasColMajor, CblasNoTrans, CblasTrans, f->rows - t, end - t, pivots, -1, at(f, t, job->first), f->rows,
+     work, end - t, 1, at(f, t, t), f->rows);
     note_peaks(f, t, end);
 }
 
@@ -286,13 +289,14 @@ void ruga_front_factor(ruga_front* f) {
     }
 }
 
-void ruga_front_update(const ruga_front* f, int begin, int end, double* work, double* update) {
+void ruga_front_update(const ruga_front* f, int begin, int end, real* work, real* update) {
     int rows = f->rows - f->full;
     for (int t = begin; t < end; t += RUGA_FRONT_TILE) {
         int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
         multiply_pivots(f, f->full + t, f->full + stop, 0, f->eliminated, work);
-        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - t, stop - t, f->eliminated, -1,
-                    at(f, f->full + t, 0), f->rows, work, stop - t, 1,
-                    update + ruga_update_column(rows, t) + t, rows - t);
+        RUGA_BLAS(gemm)
+        (CblasColMajor, CblasNoTrans, CblasTrans, rows - t, stop - t, f->eliminated, -1,
+         at(f, f->full + t, 0), f->rows, work, stop - t, 1, update + ruga_update_column(rows, t) + t,
+         rows - t);
     }
 }

@@ -8,153 +8,149 @@
 // the top are shared out by rows (forward) or by columns (backward). Sums are in the same order for any
 // number of threads.
 //
-// The rough solve reads a copy of L in single precision, half as many bytes, but computes in double: it
-// applies the inverse of L' D L'^T exactly, symmetric and with the inertia of D, where L' is L to 6e-8.
+// Where L is stored in single precision, half as many bytes are read, but all is computed in double: the
+// inverse of the stored L D L^T is applied exactly, symmetric and with the inertia of D. ruga_ldl_solve
+// refines the solution with residuals in double.
 #include "solver/ldl.h"
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/wide.h"
 
 #include <cblas.h>
 #include <math.h>
 
-enum { STRIP = 8, ROW_CHUNK = 256, COLUMN_CHUNK = 16, LARGE = 1 << 17 };
+enum { TILE = RUGA_LDL_TILE, ROW_CHUNK = 64, STRIP_CHUNK = 4, LARGE = 1 << 17 };
 
-// For panels of doubles and of floats, l [columns][stride]:
-// subtract: y[i] -= sum_k l[k][i] p[k], 0 <= i < rows. project: p[k] -= sum_i l[k][i] y[i], the sum by lanes.
-#define DEFINE_KERNELS(real, subtract, project)                                                              \
-    RUGA_WIDE static void subtract(const real* l, size_t stride, int rows, int columns, const double* p,     \
-                                   double* y) {                                                              \
-        int k = 0;                                                                                           \
-        for (; k + STRIP <= columns; k += STRIP, l += STRIP * stride) {                                      \
-            const real *a = l, *b = a + stride, *c = b + stride, *d = c + stride, *e = d + stride;           \
-            const real *f = e + stride, *g = f + stride, *h = g + stride;                                    \
-            const double p0 = p[k], p1 = p[k + 1], p2 = p[k + 2], p3 = p[k + 3];                             \
-            const double p4 = p[k + 4], p5 = p[k + 5], p6 = p[k + 6], p7 = p[k + 7];                         \
-            _Pragma("omp simd") for (int i = 0; i < rows; i++) {                                             \
-                y[i] -= ((a[i] * p0 + b[i] * p1) + (c[i] * p2 + d[i] * p3)) +                                \
-                        ((e[i] * p4 + f[i] * p5) + (g[i] * p6 + h[i] * p7));                                 \
-            }                                                                                                \
-        }                                                                                                    \
-        for (; k < columns; k++, l += stride) {                                                              \
-            _Pragma("omp simd") for (int i = 0; i < rows; i++) {                                             \
-                y[i] -= l[i] * p[k];                                                                         \
+// One strip of 4 columns, in doubles or floats, and `tiles` of its tiles below the diagonal: y are their
+// rows, p the strip's. forward: y -= L p. backward: p -= L^T y, the sum by lanes, from the last tile up, so
+// that each pass of a solve is one stream of memory.
+#define DEFINE_KERNELS(real, forward, backward)                                                              \
+    RUGA_WIDE static void forward(const real* restrict l, int tiles, const double* restrict p,               \
+                                  double* restrict y) {                                                      \
+        const double p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3];                                             \
+        for (int t = 0; t < tiles; t++, l += TILE * TILE, y += TILE) {                                       \
+            for (int r = 0; r < TILE; r++) {                                                                 \
+                y[r] -= (l[r] * p0 + l[TILE + r] * p1) + (l[2 * TILE + r] * p2 + l[3 * TILE + r] * p3);      \
             }                                                                                                \
         }                                                                                                    \
     }                                                                                                        \
-    RUGA_WIDE static void project(const real* l, size_t stride, int rows, int columns, const double* y,      \
-                                  double* p) {                                                               \
-        int k = 0;                                                                                           \
-        for (; k + STRIP / 2 <= columns; k += STRIP / 2, l += STRIP / 2 * stride) {                          \
-            const real *a = l, *b = a + stride, *c = b + stride, *d = c + stride;                            \
-            double s0 = 0, s1 = 0, s2 = 0, s3 = 0;                                                           \
-            _Pragma("omp simd reduction(+ : s0, s1, s2, s3)") for (int i = 0; i < rows; i++) {               \
-                s0 += a[i] * y[i];                                                                           \
-                s1 += b[i] * y[i];                                                                           \
-                s2 += c[i] * y[i];                                                                           \
-                s3 += d[i] * y[i];                                                                           \
+    RUGA_WIDE static void backward(const real* restrict l, int tiles, const double* restrict y,              \
+                                   double* restrict p) {                                                     \
+        double sum[TILE][TILE] = {{0}};                                                                      \
+        for (int t = tiles - 1; t >= 0; t--) {                                                               \
+            for (int k = 0; k < TILE; k++) {                                                                 \
+                for (int r = 0; r < TILE; r++) {                                                             \
+                    sum[k][r] += l[TILE * (TILE * t + k) + r] * y[TILE * t + r];                             \
+                }                                                                                            \
             }                                                                                                \
-            p[k] -= s0;                                                                                      \
-            p[k + 1] -= s1;                                                                                  \
-            p[k + 2] -= s2;                                                                                  \
-            p[k + 3] -= s3;                                                                                  \
         }                                                                                                    \
-        for (; k < columns; k++, l += stride) {                                                              \
-            double s = 0;                                                                                    \
-            _Pragma("omp simd reduction(+ : s)") for (int i = 0; i < rows; i++) {                            \
-                s += l[i] * y[i];                                                                            \
-            }                                                                                                \
-            p[k] -= s;                                                                                       \
+        for (int k = 0; k < TILE; k++) {                                                                     \
+            p[k] -= (sum[k][0] + sum[k][1]) + (sum[k][2] + sum[k][3]);                                       \
         }                                                                                                    \
     }
 
-DEFINE_KERNELS(double, subtract_double, project_double)
-DEFINE_KERNELS(float, subtract_float, project_float)
+DEFINE_KERNELS(double, forward_double, backward_double)
+DEFINE_KERNELS(float, forward_float, backward_float)
 
-// One pass: the mode, and one panel in either precision.
 typedef struct pass {
     ruga_ldl* ldl;
-    bool single, absolute;
+    bool absolute;
     double* x; // [n] by step
 } pass;
 
+// L of one front in tiles, in double or single precision; behind it D^-1.
 typedef struct panel {
-    const double* wide;
-    const float* single; // NULL: the doubles are read
-    size_t stride;
+    const double* wide; // one of them
+    const float* single;
+    int high, strips; // tiles of its rows and of its columns
 } panel;
 
-static void subtract(const panel* l, int row, int column, int rows, int columns, const double* p, double* y) {
-    size_t place = (size_t)column * l->stride + (size_t)row;
+// Strip s and the tiles of rows [begin, end) below its own; y [4 high] are the front's rows.
+static void forward_strip(const panel* l, int s, int begin, int end, double* y) {
+    size_t at = ruga_ldl_tile(l->high, s, begin);
+    double *p = y + (ptrdiff_t)TILE * s, *rows = y + (ptrdiff_t)TILE * begin;
     if (l->single) {
-        subtract_float(l->single + place, l->stride, rows, columns, p, y);
+        forward_float(l->single + at, end - begin, p, rows);
     } else {
-        subtract_double(l->wide + place, l->stride, rows, columns, p, y);
+        forward_double(l->wide + at, end - begin, p, rows);
     }
 }
 
-static void project(const panel* l, int row, int column, int rows, int columns, const double* y, double* p) {
-    size_t place = (size_t)column * l->stride + (size_t)row;
+static void backward_strip(const panel* l, int s, int begin, int end, double* y) {
+    size_t at = ruga_ldl_tile(l->high, s, begin);
+    double *p = y + (ptrdiff_t)TILE * s, *rows = y + (ptrdiff_t)TILE * begin;
     if (l->single) {
-        project_float(l->single + place, l->stride, rows, columns, y, p);
+        backward_float(l->single + at, end - begin, rows, p);
     } else {
-        project_double(l->wide + place, l->stride, rows, columns, y, p);
+        backward_double(l->wide + at, end - begin, rows, p);
     }
 }
 
-static double entry(const panel* l, int row, int column) {
-    size_t place = (size_t)column * l->stride + (size_t)row;
-    return l->single ? (double)l->single[place] : l->wide[place];
-}
-
-// y[0, end) becomes L^-1 of itself for the columns [0, done) of L, done <= end.
-static void forward_rows(const panel* l, int done, int end, double* y) {
-    for (int c = 0; c < done; c += STRIP) {
-        int stop = done - c < STRIP ? done : c + STRIP;
-        for (int k = c; k < stop; k++) {
-            for (int i = k + 1; i < stop; i++) {
-                y[i] -= entry(l, i, k) * y[k];
-            }
-        }
-        subtract(l, stop, c, end - stop, stop - c, y + c, y + stop);
+// The six entries below the diagonal of strip s, by columns.
+static void triangle_of(const panel* l, int s, double t[6]) {
+    static const int place[6] = {1, 2, 3, TILE + 2, TILE + 3, 2 * TILE + 3};
+    size_t at = ruga_ldl_tile(l->high, s, s);
+    for (int k = 0; k < 6; k++) {
+        t[k] = l->single ? (double)l->single[at + (size_t)place[k]] : l->wide[at + (size_t)place[k]];
     }
 }
 
-// y[0, done) becomes L^-T of itself less what the rows [done, end) hand down.
-static void backward_rows(const panel* l, int done, int end, double* y) {
-    for (int c = (done - 1) / STRIP * STRIP; c >= 0; c -= STRIP) {
-        int stop = done - c < STRIP ? done : c + STRIP;
-        project(l, stop, c, end - stop, stop - c, y + stop, y + c);
-        for (int k = stop - 1; k >= c; k--) {
-            for (int i = k + 1; i < stop; i++) {
-                y[k] -= entry(l, i, k) * y[i];
-            }
-        }
+// The strips become L^-1 of themselves, and the tiles up to `to` lose what those hand on.
+static void forward(const panel* l, int to, double* y) {
+    for (int s = 0; s < l->strips; s++) {
+        double t[6], *p = y + (ptrdiff_t)TILE * s;
+        triangle_of(l, s, t);
+        p[1] -= t[0] * p[0];
+        p[2] -= t[1] * p[0] + t[3] * p[1];
+        p[3] -= t[2] * p[0] + t[4] * p[1] + t[5] * p[2];
+        forward_strip(l, s, s + 1, to, y);
+    }
+}
+
+// The strips become L^-T of themselves less what the tiles up to `to` hand down.
+static void backward(const panel* l, int to, double* y) {
+    for (int s = l->strips - 1; s >= 0; s--) {
+        double t[6], *p = y + (ptrdiff_t)TILE * s;
+        backward_strip(l, s, s + 1, to, y);
+        triangle_of(l, s, t);
+        p[2] -= t[5] * p[3];
+        p[1] -= t[3] * p[2] + t[4] * p[3];
+        p[0] -= t[0] * p[1] + t[1] * p[2] + t[2] * p[3];
     }
 }
 
 typedef struct shared_panel {
     panel l;
-    int done, rows;
     double* y;
 } shared_panel;
 
+// The tiles [begin, end) below the strips, from all strips.
 static void forward_chunk(int begin, int end, int chunk, void* context) {
     (void)chunk;
-    const shared_panel* s = context;
-    subtract(&s->l, s->done + begin, 0, end - begin, s->done, s->y, s->y + s->done + begin);
+    const shared_panel* p = context;
+    for (int s = 0; s < p->l.strips; s++) {
+        forward_strip(&p->l, s, p->l.strips + begin, p->l.strips + end, p->y);
+    }
 }
 
+// The strips [begin, end), from all tiles below.
 static void backward_chunk(int begin, int end, int chunk, void* context) {
     (void)chunk;
-    const shared_panel* s = context;
-    project(&s->l, s->done, begin, s->rows - s->done, end - begin, s->y + s->done, s->y + begin);
+    const shared_panel* p = context;
+    for (int s = end - 1; s >= begin; s--) {
+        backward_strip(&p->l, s, p->l.strips, p->l.high, p->y);
+    }
 }
 
 static panel panel_of(const pass* p, const front_record* r) {
     const task_memory* m = &p->ldl->memory[r->task];
-    return (panel){m->factor + r->factor, p->single ? m->single + r->factor : NULL, (size_t)r->rows};
+    panel l = {.high = ruga_ldl_tiles(r->rows), .strips = ruga_ldl_tiles(r->eliminated)};
+    if (p->ldl->single) {
+        l.single = (const float*)m->factor + r->factor;
+    } else {
+        l.wide = (const double*)m->factor + r->factor;
+    }
+    return l;
 }
 
 static bool is_shared(const pass* p, const front_record* r) {
@@ -171,15 +167,15 @@ static void forward_front(const pass* p, int s, double* y, double* up) {
     for (int i = 0; i < done; i++) {
         y[i] = p->x[index[i]];
     }
-    for (int i = done; i < r->rows; i++) {
+    for (int i = done; i < TILE * l.high; i++) {
         y[i] = 0;
     }
     if (is_shared(p, r)) {
-        shared_panel shared = {l, done, r->rows, y};
-        forward_rows(&l, done, done, y);
-        ruga_parallel_for(r->rows - done, ROW_CHUNK, forward_chunk, &shared);
+        shared_panel shared = {l, y};
+        forward(&l, l.strips, y);
+        ruga_parallel_for(l.high - l.strips, ROW_CHUNK, forward_chunk, &shared);
     } else {
-        forward_rows(&l, done, r->rows, y);
+        forward(&l, l.high, y);
     }
     for (int i = 0; i < done; i++) {
         p->x[index[i]] = y[i];
@@ -191,8 +187,7 @@ static void forward_front(const pass* p, int s, double* y, double* up) {
 }
 
 // M = D^-1 or, absolute, |D^-1| = (M^2 + |det M| I) / sqrt(tr M^2 + 2 |det M|) for blocks (Cayley-Hamilton).
-static void apply_pair(const double d[4], bool absolute, double* x, double* y) {
-    double a = d[0], b = d[1], c = d[2];
+static void apply_pair(double a, double b, double c, bool absolute, double* x, double* y) {
     if (absolute) {
         double det = fabs(a * c - b * b), trace = a * a + 2 * b * b + c * c;
         double root = sqrt(trace + 2 * det), off = b * (a + c);
@@ -206,15 +201,21 @@ static void apply_pair(const double d[4], bool absolute, double* x, double* y) {
     *x = sum;
 }
 
-static void apply_pivots(const double* d, int count, bool absolute, double* y) {
-    for (int k = 0; k < count; k++) {
-        if (d[2 * k + 1] != 0) {
-            apply_pair(d + 2 * (size_t)k, absolute, &y[k], &y[k + 1]);
+static double pivot_entry(const panel* l, int k) {
+    size_t place = ruga_ldl_tile(l->high, l->strips, l->strips) + (size_t)k;
+    return l->single ? (double)l->single[place] : l->wide[place];
+}
+
+static void apply_pivots(const panel* l, int done, bool absolute, double* y) {
+    for (int k = 0; k < done; k++) {
+        double d = pivot_entry(l, 2 * k), e = pivot_entry(l, 2 * k + 1);
+        if (e != 0) {
+            apply_pair(d, e, pivot_entry(l, 2 * k + 2), absolute, &y[k], &y[k + 1]);
             k++;
         } else if (absolute) { // where D is zero, any positive number serves
-            y[k] *= d[2 * k] == 0 ? 1 : fabs(d[2 * k]);
+            y[k] *= d == 0 ? 1 : fabs(d);
         } else {
-            y[k] *= d[2 * k];
+            y[k] *= d;
         }
     }
 }
@@ -231,13 +232,16 @@ static void backward_front(const pass* p, int s, double* y) {
     for (int i = 0; i < r->rows; i++) {
         y[i] = p->x[index[i]];
     }
-    apply_pivots(l.wide + (size_t)done * l.stride, done, p->absolute, y);
+    for (int i = r->rows; i < TILE * l.high; i++) {
+        y[i] = 0;
+    }
+    apply_pivots(&l, done, p->absolute, y);
     if (is_shared(p, r)) {
-        shared_panel shared = {l, done, r->rows, y};
-        ruga_parallel_for(done, COLUMN_CHUNK, backward_chunk, &shared);
-        backward_rows(&l, done, done, y);
+        shared_panel shared = {l, y};
+        ruga_parallel_for(l.strips, STRIP_CHUNK, backward_chunk, &shared);
+        backward(&l, l.strips, y);
     } else {
-        backward_rows(&l, done, r->rows, y);
+        backward(&l, l.high, y);
     }
     for (int i = 0; i < done; i++) {
         p->x[index[i]] = y[i];
@@ -286,9 +290,9 @@ static void take_handed_up(const ruga_ldl* f, double* x) {
 }
 
 // y = (L D L^T)^-1 b with scaled b and y, by unknown; may be the same.
-static void solve_scaled(ruga_ldl* f, bool single, bool absolute, const double* b, double* y) {
+static void solve_scaled(ruga_ldl* f, bool absolute, const double* b, double* y) {
     const ruga_ldl_symbolic* s = &f->symbolic;
-    pass p = {f, single, absolute, f->answer};
+    pass p = {f, absolute, f->answer};
     double* top = f->gather + (size_t)s->task_count * (size_t)f->widest;
     for (int k = 0; k < s->n; k++) {
         p.x[k] = b[s->order[k]];
@@ -329,7 +333,7 @@ static double find_defect(ruga_ldl* f, double* backward) {
 // One step of iterative refinement, taken back where it does not help. True where another may.
 static bool refine(ruga_ldl* f, double* residual, double* backward) {
     int n = f->symbolic.n;
-    solve_scaled(f, false, false, f->defect, f->defect);
+    solve_scaled(f, false, f->defect, f->defect);
     cblas_daxpy(n, 1, f->defect, 1, f->guess, 1);
     double before = *residual;
     *residual = find_defect(f, backward);
@@ -342,17 +346,17 @@ static bool refine(ruga_ldl* f, double* residual, double* backward) {
 }
 
 ruga_status ruga_ldl_solve(ruga_ldl* f, const double* b, double* x) {
-    enum { REFINEMENTS = 2 };
-    const double enough = 1e-12, round_off = 4e-15;
+    const double enough = f->single ? 0 : 1e-12, round_off = 4e-15;
+    const int most = f->single ? 20 : 2;
     RUGA_ASSERT(f->ready);
     int n = f->symbolic.n;
     double size = cblas_dnrm2(n, b, 1), backward;
     for (int i = 0; i < n; i++) {
         f->load[i] = b[i] * f->scale[i];
     }
-    solve_scaled(f, false, false, f->load, f->guess);
+    solve_scaled(f, false, f->load, f->guess);
     double residual = find_defect(f, &backward);
-    for (int step = 0; step < REFINEMENTS && residual > enough * size && backward > round_off; step++) {
+    for (int step = 0; step < most && residual > enough * size && backward > round_off; step++) {
         if (!refine(f, &residual, &backward)) {
             break;
         }
@@ -363,52 +367,23 @@ ruga_status ruga_ldl_solve(ruga_ldl* f, const double* b, double* x) {
     return RUGA_OK;
 }
 
-ruga_status ruga_ldl_solve_absolute(ruga_ldl* f, const double* b, double* x) {
+// x = S (L D L^T)^-1 S b, or with |D|, as the factor stands.
+static ruga_status solve_once(ruga_ldl* f, bool absolute, const double* b, double* x) {
     RUGA_ASSERT(f->ready);
     for (int i = 0; i < f->symbolic.n; i++) {
         f->load[i] = b[i] * f->scale[i];
     }
-    solve_scaled(f, false, true, f->load, f->guess);
+    solve_scaled(f, absolute, f->load, f->guess);
     for (int i = 0; i < f->symbolic.n; i++) {
         x[i] = f->guess[i] * f->scale[i];
     }
     return RUGA_OK;
 }
 
-static void copy_task(int begin, int end, int chunk, void* context) {
-    (void)chunk;
-    ruga_ldl* f = context;
-    for (int t = begin; t < end; t++) {
-        task_memory* m = &f->memory[t];
-        for (size_t k = 0; k < m->factor_used; k++) {
-            m->single[k] = (float)m->factor[k];
-        }
-    }
-}
-
-static ruga_status copy_to_single(ruga_ldl* f) {
-    for (int t = 0; t <= f->symbolic.task_count; t++) {
-        task_memory* m = &f->memory[t];
-        RUGA_TRY(ruga_ldl_make_room((void**)&m->stack, &m->stack_capacity, (m->factor_used + 1) / 2,
-                                    sizeof(double)));
-        m->single = (float*)m->stack;
-    }
-    ruga_parallel_for(f->symbolic.task_count + 1, 1, copy_task, f);
-    f->single_ready = true;
-    return RUGA_OK;
+ruga_status ruga_ldl_solve_absolute(ruga_ldl* f, const double* b, double* x) {
+    return solve_once(f, true, b, x);
 }
 
 ruga_status ruga_ldl_solve_rough(ruga_ldl* f, const double* b, double* x) {
-    RUGA_ASSERT(f->ready);
-    if (!f->single_ready) {
-        RUGA_TRY(copy_to_single(f));
-    }
-    for (int i = 0; i < f->symbolic.n; i++) {
-        f->load[i] = b[i] * f->scale[i];
-    }
-    solve_scaled(f, true, false, f->load, f->guess);
-    for (int i = 0; i < f->symbolic.n; i++) {
-        x[i] = f->guess[i] * f->scale[i];
-    }
-    return RUGA_OK;
+    return solve_once(f, false, b, x);
 }

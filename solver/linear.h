@@ -10,7 +10,12 @@
 
 #include "core/sparse.h"
 
-typedef enum ruga_factor_kind { RUGA_FACTOR_CHOLESKY, RUGA_FACTOR_LDL } ruga_factor_kind;
+// LDL_SINGLE: L is stored in single precision, and solves are refined.
+typedef enum ruga_factor_kind {
+    RUGA_FACTOR_CHOLESKY,
+    RUGA_FACTOR_LDL,
+    RUGA_FACTOR_LDL_SINGLE
+} ruga_factor_kind;
 
 typedef struct ruga_factor ruga_factor;
 
@@ -36,17 +41,22 @@ void ruga_factor_destroy(ruga_factor** factor);
 // call on, unless more pivots must be delayed to parent fronts than ever before. Uses ruga_threads() threads.
 ruga_status ruga_factor_numeric(ruga_factor* factor, const double* values, ruga_factor_info* info);
 
+// LDL_SINGLE only: made in single precision throughout, in half of the time. The inertia is that of a matrix
+// which is that near, so it certifies nothing.
+ruga_status ruga_factor_numeric_single(ruga_factor* factor, const double* values, ruga_factor_info* info);
+
 // x = A^-1 b; b and x [n], may be the same. Only after a numeric factorisation with success (LDL: always;
 // where pivots are zero, b must be consistent). Refined where the residual is above 1e-12 |b| and round-off
-// in x does not explain it (LDL). One call at a time on the same factor: the work space is part of it.
+// in x does not explain it (LDL), or until round-off does (LDL_SINGLE). One call at a time on the same
+// factor: the work space is part of it.
 ruga_status ruga_factor_solve(ruga_factor* factor, const double* b, double* x);
 
-// LDL only: x near A^-1 b, without refinement and from a copy of the factor in single precision, which the first
-// call after a factorisation makes: as fast as the memory gives the copy. A symmetric operator with the inertia of
-// the factor: an initial inverse or preconditioner. Cholesky: the same as ruga_factor_solve.
+// LDL: x near A^-1 b, without refinement: with LDL_SINGLE to single precision, and as fast as the memory
+// gives L. A symmetric operator with the inertia of the factor: an initial inverse or preconditioner.
+// Cholesky: the same as ruga_factor_solve.
 ruga_status ruga_factor_solve_rough(ruga_factor* factor, const double* b, double* x);
 
-// LDL only: x = (L |D| L^T)^-1 b, positive definite: the preconditioner for MINRES (Gill et al. 1992).
+// LDL: x = (L |D| L^T)^-1 b, positive definite: the preconditioner for MINRES (Gill et al. 1992).
 ruga_status ruga_factor_solve_absolute(ruga_factor* factor, const double* b, double* x);
 
 // Bytes held by the factor.

@@ -91,6 +91,9 @@ static ruga_status check_material(const ruga_model_def* def) {
         RUGA_TRY(require(positive(s->growth[i]), "skin.growth", s->growth[i], "above 0"));
     }
     RUGA_TRY(require(isfinite(def->start.fold), "start.fold", def->start.fold, "finite"));
+    if (def->start.fold != 0 && def->crease_count == 0) {
+        return ruga_fail(RUGA_BAD_INPUT, "start.fold: there are no creases to fold about");
+    }
     RUGA_TRY(check_motion(def));
     RUGA_TRY(require(s->motion != RUGA_SKIN_DAMPED || positive(s->relaxation), "skin.relaxation",
                      s->relaxation, "above 0"));
@@ -469,7 +472,7 @@ static ruga_status build_coupling(ruga_model* model) {
     if (model->edges < 3 && !model->solver.allow_coarse) {
         return ruga_fail(
             RUGA_BAD_INPUT,
-            "the mesh has %.2g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
+            "the mesh has %.3g edges per wrinkle wavelength (mean edge %.4g m, wavelength %.4g m), at "
             "least 3 are needed and 8 are good: remesh with edge %.3g m, or set solver.allow_coarse",
             model->edges, model->mean_edge, model->edges_wavelength, model->edges_wavelength / 8);
     }

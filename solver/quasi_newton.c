@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // L-BFGS on the null space of the constraints. Its initial inverse is a factor of the KKT matrix that is renewed about
-// every 16 iterations from a Hessian with half of the compressive geometric stiffness taken out (the exact one is
+// every 24 iterations from a Hessian with half of the compressive geometric stiffness taken out (the exact one is
 // indefinite while wrinkles move); the last certified exact factor starts the next frame. A KKT solve returns steps
 // with H d = 0, so every iterate stays feasible. facts: a wrinkled valley is curved on the scale of the thickness,
 // so any quadratic model serves for about 0.2 h only; cheap steps with a fresh enough factor win over Newton's.
@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { PAIRS = 8, REFRESH = 16, MAX_ITERATIONS = 3000 };
+enum { PAIRS = 8, REFRESH = 24, MAX_ITERATIONS = 3000 };
 enum { GRADIENT, PROJECTED, DIRECTION, OLD_GRADIENT, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
 
 typedef struct memory {
@@ -94,20 +94,6 @@ static ruga_status iterate(ruga_skin* skin, memory* m, double* x, double* gradie
     return RUGA_OK;
 }
 
-// A proximal term stiffer than a wrinkle (three shift units, docs/method.md) mostly makes the exact Hessian convex, which is
-// better than the clamped one: that is up to ten times too stiff along the soft directions. With less, or none, it fails
-// too often while wrinkles slide, even where the residual is small.
-static ruga_status renew_factor(ruga_skin* skin, const double* x, memory* m) {
-    *m = (memory){.gamma = 1, .newest = -1};
-    if (skin->proximal > 3 * ruga_skin_shift_unit(skin->model)) {
-        RUGA_TRY(ruga_skin_factor(skin, x, 0, 0));
-        if (skin->factor_right) {
-            return RUGA_OK;
-        }
-    }
-    return ruga_skin_factor_convex(skin, x);
-}
-
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result) {
     double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
@@ -132,7 +118,8 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
             score = REFRESH;
         }
         if (score >= REFRESH) {
-            RUGA_TRY(renew_factor(skin, x, &m));
+            RUGA_TRY(ruga_skin_factor_convex(skin, x));
+            m = (memory){.gamma = 1, .newest = -1};
             score = 0;
             continue;
         }
@@ -141,6 +128,7 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
         bool useless = score == 0 && (move > 2 * skin->model->skin.thickness || step < 0.2) && failures == 0;
         score = useless || step == 0 ? REFRESH : score + 1 + (step < 0.35);
         failures = step * move <= 0x1p-52 * skin->model->extent ? failures + 1 : 0;
+        skin->single_serves = skin->single_serves && failures == 0;
         if (failures > 3) {
             return RUGA_OK;
         }

@@ -211,7 +211,7 @@ static ruga_status create_factor(ruga_skin* skin) {
         last[i] = true;
     }
     // Without clusters CHOLMOD would do as well; the LDL^T takes half of its time (solver/README.md).
-    RUGA_TRY_DONE(ruga_factor_create(RUGA_FACTOR_LDL, &skin->kkt, nodes, start, skin->m ? last : NULL,
+    RUGA_TRY_DONE(ruga_factor_create(RUGA_FACTOR_LDL_SINGLE, &skin->kkt, nodes, start, skin->m ? last : NULL,
                                      &skin->factor));
 done:
     ruga_release(start);
@@ -522,11 +522,12 @@ static void fill_kkt(ruga_skin* skin, double shift) {
     }
 }
 
-static ruga_status factorize(ruga_skin* skin, double shift) {
+static ruga_status factorize(ruga_skin* skin, double shift, bool in_single) {
     double begin = ruga_clock();
     fill_kkt(skin, shift);
     double filled = ruga_clock();
-    RUGA_TRY(ruga_factor_numeric(skin->factor, skin->kkt.value, &skin->info));
+    RUGA_TRY(in_single ? ruga_factor_numeric_single(skin->factor, skin->kkt.value, &skin->info)
+                       : ruga_factor_numeric(skin->factor, skin->kkt.value, &skin->info));
     skin->factor_right = skin->info.negative == skin->m && skin->info.zero == 0;
     skin->work.factorizations++;
     skin->work.failures += !skin->factor_right;
@@ -564,14 +565,23 @@ ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
 
 ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift) {
     RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
-    RUGA_TRY(factorize(skin, shift));
+    RUGA_TRY(factorize(skin, shift, false));
     skin->factor_exact = clamp == 0 && shift == 0;
     return RUGA_OK;
 }
 
 ruga_status ruga_skin_refactor(ruga_skin* skin, double shift) {
     skin->factor_exact = skin->factor_exact && shift == 0;
-    return factorize(skin, shift);
+    return factorize(skin, shift, false);
+}
+
+// Without a shift and in single precision, in half of the time: an initial inverse, whose inertia certifies nothing.
+static ruga_status factor_single(ruga_skin* skin, const double* x, double clamp) {
+    RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
+    RUGA_TRY(factorize(skin, 0, true));
+    skin->single_serves = skin->single_serves && skin->info.zero == 0;
+    skin->factor_exact = false;
+    return RUGA_OK;
 }
 
 double ruga_skin_shift_unit(const ruga_model* model) {
@@ -583,9 +593,14 @@ double ruga_skin_shift_unit(const ruga_model* model) {
 }
 
 ruga_status ruga_skin_factor_convex(ruga_skin* skin, const double* x) {
-    RUGA_TRY(ruga_skin_factor(skin, x, 0.5, 0));
-    if (!skin->factor_right) {
-        RUGA_TRY(ruga_skin_factor(skin, x, 1, 0));
+    static const double clamp[2] = {0.5, 1};
+    skin->factor_right = false;
+    for (int k = 0; k < 2 && skin->single_serves && !skin->factor_right; k++) {
+        RUGA_TRY(factor_single(skin, x, clamp[k]));
+    }
+    skin->single_serves = skin->factor_right;
+    for (int k = 0; k < 2 && !skin->factor_right; k++) {
+        RUGA_TRY(ruga_skin_factor(skin, x, clamp[k], 0));
     }
     for (double shift = 1e-3 * ruga_skin_shift_unit(skin->model); !skin->factor_right && shift < 1e30; shift *= 10) {
         RUGA_TRY(ruga_skin_refactor(skin, shift));

@@ -37,7 +37,8 @@ typedef struct ruga_skin {
     bool* row_void;         // [m] rows of H that are left out: what they average is held
     bool near_dependent;    // the other rows are dependent on one another, or nearly
     bool factor_right;      // the factor's inertia is that of a minimum
-    bool factor_exact;      // made from the exact Hessian without a shift, at the state last given
+    bool factor_exact;      // made from the exact Hessian without a shift, in double, at the state last given
+    bool single_serves;     // no factor of this solve was beyond single precision
     ruga_factor* gram[3];   // H H^T over the free components; [1] and [2] NULL where they equal [0]
     double shift_memory;    // last diagonal shift that gave the right inertia, N/m^3
 
@@ -75,9 +76,8 @@ ruga_status ruga_skin_handle_forces(ruga_skin* skin, const double* x, double* fo
 ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp);
 // Assembles, adds shift times vertex area to the diagonal, and factorises. See factor_right.
 ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift);
-// The same K with another shift.
-ruga_status ruga_skin_refactor(ruga_skin* skin, double shift);
-// Tries clamp 0.5, then 1, then shifts, until the inertia is right.
+ruga_status ruga_skin_refactor(ruga_skin* skin, double shift); // the same K with another shift
+// Tries clamp 0.5, then 1, in single precision while that serves, then in double, then shifts: the inertia is right.
 ruga_status ruga_skin_factor_convex(ruga_skin* skin, const double* x);
 double ruga_skin_shift_unit(const ruga_model* model); // N/m^3, small against a wrinkle's: the unit of shifts
 // Raises the shift of the K last assembled (exact, of wrong inertia) until it is.
@@ -85,8 +85,7 @@ ruga_status ruga_skin_shift_until_right(ruga_skin* skin);
 
 // d = the first n of [K H^T; H 0]^-1 [r; 0], with held components of r taken as 0: H d = 0.
 ruga_status ruga_skin_solve(ruga_skin* skin, const double* r, double* d);
-// Near that, by a factor in single precision between two projections: symmetric, H d = 0 to round-off, and about
-// twice as fast. An initial inverse or preconditioner.
+// Near that, as the factor in single precision stands, between two projections: symmetric, and H d = 0 to round-off.
 ruga_status ruga_skin_solve_rough(ruga_skin* skin, const double* r, double* d);
 // The full system: sides [size], right with 0 for the directors.
 ruga_status ruga_skin_solve_system(ruga_skin* skin, const double* right, double* left);
@@ -94,8 +93,7 @@ ruga_status ruga_skin_solve_system(ruga_skin* skin, const double* right, double*
 // out = gradient without its held components and without its part in the range of H^T; sets multiplier (so
 // that gradient + H^T multiplier is smallest). out may be gradient.
 ruga_status ruga_skin_project(ruga_skin* skin, const double* gradient, double* out);
-// Zeroes the entries of left-out rows in y [m].
-void ruga_skin_clear_void_rows(const ruga_skin* skin, double* y);
+void ruga_skin_clear_void_rows(const ruga_skin* skin, double* y); // zeroes the entries of left-out rows in y [m]
 // Moves x the least so that H x = H B q and held components are at their target.
 ruga_status ruga_skin_restore(ruga_skin* skin, double* x);
 // |H x - H B q| / |H B q|
@@ -129,9 +127,9 @@ ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d);
 ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double tolerance, double* target,
                               double* gradient, ruga_skin_result* result, bool* done);
 
-// Line search along d from x (energy and gradient there given): Armijo's rule on the energy with quadratic
-// interpolation; a full step of negative curvature is doubled while the energy falls. On success x, terms and gradient are
-// those of the new point and *step > 0; *step = 0 where no decrease was found.
+// Line search along d from x (energy and gradient there given): Armijo's rule on the energy with quadratic interpolation;
+// a full step of negative curvature is doubled while the energy falls. On success x, terms and gradient are those of the
+// new point and *step > 0; *step = 0 where no decrease was found.
 ruga_status ruga_armijo_search(ruga_skin* skin, const double* d, double* x, ruga_skin_terms* terms,
                                double* gradient, double* step);
 

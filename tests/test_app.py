@@ -281,6 +281,9 @@ class Scenes(Case):
         stronger = self.json("explain", self.scene, "--strain", "10%")
         self.assertGreater(stronger["amplitude"], facts["amplitude"])
         self.assertRegex(self.ruga("explain", self.scene).stdout, r"skin.density +900 kg/m\^3 +\(default\)")
+        cloth = self.write("cloth.yaml", "mesh: {make: {shape: sheet, size: [20 cm, 20 cm]}}\ninterior: none\n"
+                           "skin: {motion: dynamic}\n")
+        self.assertGreater(self.json("explain", cloth)["seconds"], 0)
 
     def test_a_coarse_mesh_is_warned_of_and_then_refused_but_explained(self):
         coarse = ("--set", "mesh.make.edge=7 mm")
@@ -453,6 +456,23 @@ time:       {frames: 1}
         scene = self.write("coupled.yaml", COUPLED)
         self.ruga("run", scene, "-o", "coupled.h5")
         self.kill_and_resume(scene, 10, self.path("coupled.h5"))
+
+    def test_creases_along_the_ridges_of_a_result(self):
+        bent = self.write("bent.yaml", """\
+mesh:     {make: {shape: sheet, size: [20 cm, 12 cm], edge: 8 mm}}
+skin:     {thickness: 0.3 mm, young: 1 GPa}
+interior: none
+handles:
+  - {region: {plane: {center: [-9.9 cm, 0, 0], normal: [-1, 0, 0]}}, fix: true}
+  - {region: {plane: {center: [9.9 cm, 0, 0], normal: [1, 0, 0]}}, move: {translate: [-3 cm, 0, 1 cm]}, during: [0 s, 60 ms]}
+time:     {frames: 3}
+""")
+        self.ruga("run", bent, "-o", "bent.h5")
+        ridge = "creases=[{curve: {stress: {result: bent.h5, from: bending}}, hinge: {rest: assigned}}]"
+        facts = self.json("explain", bent, "--set", ridge, "--set", "mesh.make.edge=7 mm")  # other triangles
+        self.assertEqual(facts["creases"]["curves"], 1)
+        self.refused("explain", bent, "--set", ridge, "--set", "mesh.make={shape: pillow, size: 20 cm}", "--set",
+                     "handles=[]", saying=r"creases\.0\.curve: bent\.h5 has another surface at rest")
 
     def test_a_shell_that_nothing_holds_stays_where_it_is_or_is_refused(self):
         scene = self.write("free.yaml", """\

@@ -133,16 +133,32 @@ static void bad_patterns_are_repaired_aloud(void** state) {
     assert_near(length_of(&p, RUGA_ASSIGNMENT_MOUNTAIN), 4 + 1, 1e-9);
     assert_near(length_of(&p, RUGA_ASSIGNMENT_VALLEY), 4 + 1, 1e-9);
     ruga_crease_pattern_clear(&p);
-    // An outline that is open at (0, 0), beside a closed one; and an angle of the other sign than the letter's.
+    // An outline that is open at (0, 0), beside a closed one; and an angle of the other sign than the
+    // letter's.
     read_text("{\"vertices_coords\": [[0,0],[1,0],[2,0],[2,1],[1,1],[0,1]],"
               "\"edges_vertices\": [[1,2],[2,3],[3,4],[4,5],[5,0],[1,4],[1,3]],"
               "\"edges_assignment\": [\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"V\"],"
               "\"edges_foldAngle\": [0,0,0,0,0,0,-30]}",
               &p);
     assert_true(has_note(&p, "2 border lines enclose nothing, as the outline is open at (0, 0)"));
-    assert_true(has_note(&p, "edges_foldAngle[6] is -30 degrees, although edges_assignment calls the line a valley"));
+    assert_true(
+        has_note(&p, "edges_foldAngle[6] is -30 degrees, although edges_assignment calls the line a valley"));
     assert_false(has_note(&p, "end within a face"));
     assert_int_equal(p.face_count, 2);
+    ruga_crease_pattern_clear(&p);
+    // A curved valley in two pieces with a flat line between, and angles that differ by round-off, is one
+    // crease, which may bend.
+    read_text("{\"vertices_coords\": [[0,0],[2,0],[4,0],[4,4],[2,4],[0,4],[1.8,2]],"
+              "\"edges_vertices\": [[0,1],[1,2],[2,3],[3,4],[4,5],[5,0],[1,6],[6,4],[6,3]],"
+              "\"edges_assignment\": [\"B\",\"B\",\"B\",\"B\",\"B\",\"B\",\"V\",\"V\",\"F\"],"
+              "\"edges_foldAngle\": [0,0,0,0,0,0,30,30.000000000001,0]}",
+              &p);
+    ruga_curves bent = {0};
+    assert_ok(ruga_crease_pattern_curves(&p, &(ruga_curve){0}, false, &bent));
+    assert_int_equal(bent.count, 1);
+    assert_int_equal(bent.curve[0].point_count, 3);
+    assert_int_equal(bent.curve[0].freedom, RUGA_FREEDOM_FULL);
+    ruga_curves_clear(&bent);
     ruga_crease_pattern_clear(&p);
     // A closed line that nothing joins to the border.
     read_text("{\"vertices_coords\": [[0,0],[4,0],[4,4],[0,4],[1,1],[2,1],[2,2]],"
@@ -359,9 +375,13 @@ static void strokes_say_what_lines_are(void** state) {
         "<defs><line stroke='red' x1='0' y1='0' x2='9' y2='9'/></defs>"
         "<line stroke='red' display='none' x1='0' y1='0' x2='9' y2='9'/>"
         "<line x1='0' y1='0' x2='9' y2='9'/>"
+        "<line stroke='chucknorris' x1='0' y1='0' x2='9' y2='9'/>"
         "</svg>",
         &p);
     assert_int_equal(p.face_count, 9);
+    assert_true(has_note(
+        &p,
+        "1 shapes were left out, as the colour of their stroke is not known; the first is 'chucknorris'"));
     const ruga_assignment wanted[] = {
         RUGA_ASSIGNMENT_MOUNTAIN,   RUGA_ASSIGNMENT_VALLEY, RUGA_ASSIGNMENT_FLAT,     RUGA_ASSIGNMENT_CUT,
         RUGA_ASSIGNMENT_UNASSIGNED, RUGA_ASSIGNMENT_FLAT,   RUGA_ASSIGNMENT_MOUNTAIN, RUGA_ASSIGNMENT_VALLEY};

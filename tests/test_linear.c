@@ -447,12 +447,16 @@ static void dense_system(linear_system* s, int n) {
     ruga_release(list.pairs);
 }
 
+typedef ruga_status numeric(ruga_factor* factor, const double* values, ruga_factor_info* info);
+
 static void bits_do_not_depend_on_threads_or_repetition(void** state) {
     (void)state;
-    for (int large_front = 0; large_front < 2; large_front++) {
+    for (int trial = 0; trial < 6; trial++) { // with small and large fronts, in each precision
+        numeric* const factorise = trial < 4 ? ruga_factor_numeric : ruga_factor_numeric_single;
+        const ruga_factor_kind kind = trial < 2 ? RUGA_FACTOR_LDL : RUGA_FACTOR_LDL_SINGLE;
         linear_system s;
         ruga_factor_info info;
-        if (large_front) {
+        if (trial % 2) {
             dense_system(&s, 500);
         } else {
             kkt(&s, &wavy);
@@ -461,12 +465,13 @@ static void bits_do_not_depend_on_threads_or_repetition(void** state) {
         double *b = random_vector(n, 1), *first = random_vector(2 * n, 2), *x = random_vector(2 * n, 3);
         for (int k = 0; k < 4; k++) {
             ruga_set_threads(1 + k % 2);
-            ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL, &info);
+            ruga_factor* f = factor_of(&s, kind, &info);
+            assert_ok(factorise(f, s.a.value, &info));
             assert_ok(ruga_factor_solve(f, b, k ? x : first));
             assert_ok(ruga_factor_solve_rough(f, b, (k ? x : first) + n));
             for (int again = 0; k && again < 2; again++) {
                 assert_memory_equal(x, first, 2 * (size_t)n * sizeof *x);
-                assert_ok(ruga_factor_numeric(f, s.a.value, &info));
+                assert_ok(factorise(f, s.a.value, &info));
                 assert_ok(ruga_factor_solve(f, b, x));
                 assert_ok(ruga_factor_solve_rough(f, b, x + n));
             }
@@ -497,13 +502,58 @@ static void dense_front_is_solved_with_the_inertia_of_its_eigenvalues(void** sta
     system_clear(&s);
 }
 
+static void factors_in_single_precision_are_refined_to_round_off(void** state) {
+    (void)state;
+    const kkt_def* const defs[2] = {&firm, &wavy};
+    for (int trial = 0; trial < 4; trial++) {
+        const kkt_def* def = defs[trial % 2];
+        linear_system s;
+        ruga_factor_info info, in_double;
+        kkt(&s, def);
+        ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL, &in_double);
+        size_t bytes = ruga_factor_bytes(f);
+        ruga_factor_destroy(&f);
+        f = factor_of(&s, RUGA_FACTOR_LDL_SINGLE, &info);
+        if (trial >= 2) {
+            assert_ok(ruga_factor_numeric_single(f, s.a.value, &info));
+        }
+        assert_true(info.success);
+        assert_int_equal(info.positive, in_double.positive);
+        assert_int_equal(info.negative, in_double.negative);
+        assert_true(solve_residual(&s, f) <= 1e-11);
+        check_constraints(&s, f, def->side * def->side);
+        assert_true(ruga_factor_bytes(f) < bytes - 3 * (size_t)info.entries);
+        ruga_factor_destroy(&f);
+        system_clear(&s);
+    }
+}
+
+// Springs that hardly anything holds in space: what is left to the last pivots is round-off in single precision.
+static void what_single_precision_cannot_tell_is_said(void** state) {
+    (void)state;
+    linear_system s;
+    ruga_factor_info info;
+    laplacian(&s, 20);
+    for (int j = 0; j < s.a.columns; j++) {
+        s.a.value[s.a.start[j]] -= 0.1 - 1e-9;
+    }
+    ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL_SINGLE, &info);
+    assert_true(info.success);
+    assert_int_equal(info.positive, s.a.columns);
+    assert_ok(ruga_factor_numeric_single(f, s.a.value, &info));
+    assert_false(info.success);
+    assert_int_equal(info.zero, 3);
+    ruga_factor_destroy(&f);
+    system_clear(&s);
+}
+
 static void rough_solve_is_symmetric_and_near_the_solution(void** state) {
     (void)state;
     linear_system s;
     ruga_factor_info info;
     kkt(&s, &firm);
     int n = s.a.rows, primal = 3 * firm.side * firm.side;
-    ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL, &info);
+    ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL_SINGLE, &info);
     double *b = random_vector(n, 1), *c = random_vector(n, 2), *x = random_vector(n, 3), *y = random_vector(n, 4);
     memset(b + primal, 0, (size_t)(n - primal) * sizeof *b);
     memset(c + primal, 0, (size_t)(n - primal) * sizeof *c);
@@ -575,14 +625,13 @@ static void kth_failed_allocation_is_reported(void** state) {
     ruga_set_threads(1);
     let_allocations_fail_after(INT32_MAX);
     kkt(&s, &def);
-    for (int kind = 0; kind < 2; kind++) {
+    for (int kind = RUGA_FACTOR_CHOLESKY; kind <= RUGA_FACTOR_LDL_SINGLE; kind++) {
         ruga_status status = RUGA_NO_MEMORY;
         for (int k = 0; status != RUGA_OK; k++) {
             ruga_factor* f = NULL;
             ruga_factor_info info;
             allocations_left = k;
-            status = ruga_factor_create(kind ? RUGA_FACTOR_LDL : RUGA_FACTOR_CHOLESKY, &s.a, s.nodes,
-                                        s.node_start, s.last, &f);
+            status = ruga_factor_create((ruga_factor_kind)kind, &s.a, s.nodes, s.node_start, s.last, &f);
             if (status == RUGA_OK) {
                 status = ruga_factor_numeric(f, s.a.value, &info);
             } else {
@@ -605,12 +654,19 @@ static void nothing_is_allocated_after_the_first_factorisation(void** state) {
     let_allocations_fail_after(INT32_MAX);
     kkt(&s, &wavy);
     double* x = random_vector(s.a.rows, 1);
-    ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL, &info);
-    allocations_left = 0;
-    assert_ok(ruga_factor_numeric(f, s.a.value, &info));
-    assert_ok(ruga_factor_solve(f, x, x));
-    assert_ok(ruga_factor_solve_absolute(f, x, x));
-    ruga_factor_destroy(&f);
+    for (int kind = RUGA_FACTOR_LDL; kind <= RUGA_FACTOR_LDL_SINGLE; kind++) {
+        allocations_left = INT32_MAX;
+        ruga_factor* f = factor_of(&s, (ruga_factor_kind)kind, &info);
+        allocations_left = 0;
+        if (kind == RUGA_FACTOR_LDL_SINGLE) {
+            assert_ok(ruga_factor_numeric_single(f, s.a.value, &info));
+            assert_ok(ruga_factor_solve_rough(f, x, x));
+        }
+        assert_ok(ruga_factor_numeric(f, s.a.value, &info));
+        assert_ok(ruga_factor_solve(f, x, x));
+        assert_ok(ruga_factor_solve_absolute(f, x, x));
+        ruga_factor_destroy(&f);
+    }
     ruga_release(x);
     system_clear(&s);
     ruga_set_allocator(NULL, NULL, NULL);
@@ -631,6 +687,8 @@ int main(void) {
         cmocka_unit_test(absolute_factor_is_spd_and_perfect_for_minres),
         cmocka_unit_test(bits_do_not_depend_on_threads_or_repetition),
         cmocka_unit_test(dense_front_is_solved_with_the_inertia_of_its_eigenvalues),
+        cmocka_unit_test(factors_in_single_precision_are_refined_to_round_off),
+        cmocka_unit_test(what_single_precision_cannot_tell_is_said),
         cmocka_unit_test(rough_solve_is_symmetric_and_near_the_solution),
         cmocka_unit_test(tiny_and_odd_patterns_are_solved),
         cmocka_unit_test(values_that_are_not_finite_are_refused),

@@ -91,6 +91,9 @@ static void what_does_not_go_together_is_refused(void** state) {
     m.s.def.has_interior = true;
     refuse(&m, "start.fold: needs interior: none");
     m.s.def.has_interior = false;
+    m.s.def.crease_count = 0;
+    refuse(&m, "start.fold: there are no creases");
+    m.s.def.crease_count = 1;
     m.s.def.start.fold = 0;
     m.crease[0].start = 1;
     refuse(&m, "creases.0.start");

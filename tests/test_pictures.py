@@ -249,6 +249,10 @@ class Pictures(unittest.TestCase):
                 f"{k},{k * k},minimum,{3 * k}\n" for k in (1, 2, 4)))
         self.ruga("plot", "t.csv", "-o", "t.svg")
         self.ruga("plot", "t.csv", "--x", "young", "--what", "thickness+wavelength,wavelength", "--log", "xy", "-o", "u.svg")
+        with open(self.path("wide.csv"), "w", encoding="utf-8") as file:  # more than a page holds
+            file.write(",".join(f"c{k}" for k in range(20)) + "\n" + "".join(
+                ",".join(str(row * (k % 3)) for k in range(20)) + "\n" for row in (1, 2, 3)))
+        self.assertIn("7 of its 19 columns", self.call("plot", "wide.csv", "--x", "c1", "-o", "w.svg").stderr)
         self.refused("plot", "t.csv", "--what", "wavelengt", "-o", "v.svg", saying="did you mean wavelength")
         self.refused("plot", "t.csv", "--what", "outcome", "-o", "v.svg", saying="no point to draw")
         self.refused("plot", "none.csv", "-o", "v.svg", saying="cannot be read")
@@ -284,6 +288,8 @@ class Pictures(unittest.TestCase):
         page = self.read("page.html").decode()
         self.assertNotRegex(page, r"""(?i)(?:src|href)\s*=\s*["']?https?:""")
         self.assertEqual(len(re.findall(r'<script type="application/octet-stream" id="', page)), 4)
+        shutil.copy(self.path("sheet.h5"), self.path("no utf \udcff.h5"))
+        self.ruga("view", "no utf \udcff.h5", "-o", "page.html")
         self.ruga("view", "folded.h5", "-o", "folded.html")
         facts = json.loads(re.search(r'<script type="application/json"[^>]*>(.*?)</script>',
                                      self.read("folded.html").decode(), re.S).group(1))

@@ -292,6 +292,49 @@ static void vertices_near_a_line_are_moved_onto_it(void** state) {
 
 // ------------------------------------------------------------------------------- fuzz
 
+// Their middles, which tell where they are on the mesh, are all at the one place that becomes a vertex.
+static void many_lines_over_the_border_may_meet_at_one_place(void** state) {
+    (void)state;
+    const ruga_raster_def def = ruga_default_raster_def();
+    crease_case c = {.curves = {0}};
+    make_squares(8, 6, false, &c.mesh);
+    for (int k = 0; k < 9; k++) {
+        double a = RUGA_PI * k / 9, x = 4.3, y = 3.4;
+        add_line(&c.curves, RUGA_FREEDOM_AUTO, x - 20 * cos(a), y - 20 * sin(a), x + 20 * cos(a),
+                 y + 20 * sin(a));
+    }
+    run_case(&c, &def);
+    assert_consistent(&c);
+    for (int k = 0; k < 9; k++) {
+        assert_true(c.raster.facts[k].meets && c.raster.facts[k].length > 6);
+        assert_near(c.raster.facts[k].placed, c.raster.facts[k].length, 1e-12);
+    }
+    clear_case(&c);
+}
+
+// Cuts before folds, then the first; how much of the others is left is known.
+static void where_curves_lie_on_one_another_one_counts(void** state) {
+    (void)state;
+    const ruga_raster_def def = ruga_default_raster_def();
+    const double line[4][2][3] = {{{-1, 2.3, 0}, {5, 2.3, 0}},
+                                  {{3, 2.3, 0}, {9, 2.3, 0}},
+                                  {{4, 2.3, 0}, {6, 2.3, 0}},
+                                  {{-1, 0, 0}, {9, 0, 0}}};
+    const double placed[4] = {4, 2, 2, 0}, left[4] = {1, 3, 0, 0};
+    crease_case c = {.curves = {0}};
+    make_squares(8, 6, true, &c.mesh);
+    for (int k = 0; k < 4; k++) {
+        const ruga_curve style = {.kind = k == 2 ? RUGA_CREASE_CUT : RUGA_CREASE_FOLD, .label = k};
+        assert_ok(ruga_curves_add_polyline(&c.curves, &style, 2, line[k]));
+    }
+    run_case(&c, &def);
+    for (int k = 0; k < 4; k++) {
+        assert_near(c.raster.facts[k].placed, placed[k], 1e-12);
+        assert_near(c.raster.facts[k].left, left[k], 1e-12);
+    }
+    clear_case(&c);
+}
+
 static void random_curves_on_random_meshes_are_cut_or_refused(void** state) {
     (void)state;
     int refused = 0, rows = 0, most_copies = 0;
@@ -361,6 +404,8 @@ int main(void) {
         cmocka_unit_test(corners_of_a_polyline_become_vertices),
         cmocka_unit_test(parallel_lines_closer_than_an_edge_are_taken_apart),
         cmocka_unit_test(vertices_near_a_line_are_moved_onto_it),
+        cmocka_unit_test(many_lines_over_the_border_may_meet_at_one_place),
+        cmocka_unit_test(where_curves_lie_on_one_another_one_counts),
         cmocka_unit_test(random_curves_on_random_meshes_are_cut_or_refused),
         cmocka_unit_test(every_failed_allocation_is_a_status),
     };

@@ -4,7 +4,7 @@
 // Linear algebra by itself: factor and solves of the pillow's KKT matrix [K H^T; H 0] (bench.c), 1 %
 // compressed into waves of its own wavelength, beside CHOLMOD of K + W without clusters. One line per size
 // and kind: size, fill, work and rate, medians of seconds, all ratios to the Cholesky factorisation of the
-// same run.
+// same run; `singl`, a factorisation in single precision, to the one in double.
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -40,7 +40,7 @@ typedef struct matrix {
 } matrix;
 
 typedef struct figures {
-    double analyse, factor[2], solve[2], rough[2], residual, rough_residual, bytes;
+    double analyse, factor[2], single, solve[2], rough[2], residual, rough_residual, bytes;
     ruga_factor_info info;
 } figures;
 
@@ -77,7 +77,7 @@ static ruga_status measure(ruga_factor_kind kind, const matrix* a, int repeats, 
     ruga_status status = RUGA_OK;
     ruga_factor* factor = NULL;
     int n = a->lower->columns;
-    double *b = NULL, *x = NULL, factors[MAX_REPEATS], solves[MAX_REPEATS * SOLVES],
+    double *b = NULL, *x = NULL, factors[MAX_REPEATS], singles[MAX_REPEATS], solves[MAX_REPEATS * SOLVES],
            roughs[MAX_REPEATS * SOLVES];
     RUGA_TRY_DONE(RUGA_NEW_ZERO(b, n));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(x, 2 * (size_t)n));
@@ -91,6 +91,11 @@ static ruga_status measure(ruga_factor_kind kind, const matrix* a, int repeats, 
         RUGA_TRY_DONE(solve_once(factor, ruga_factor_solve, a, b, x, &f->residual));
         for (int k = 0; k < repeats; k++) {
             begin = seconds(threads);
+            if (kind == RUGA_FACTOR_LDL_SINGLE) {
+                RUGA_TRY_DONE(ruga_factor_numeric_single(factor, a->lower->value, &f->info));
+            }
+            singles[k] = seconds(threads) - begin;
+            begin = seconds(threads);
             RUGA_TRY_DONE(ruga_factor_numeric(factor, a->lower->value, &f->info));
             factors[k] = seconds(threads) - begin;
             for (int s = 0; s < SOLVES; s++) {
@@ -98,7 +103,6 @@ static ruga_status measure(ruga_factor_kind kind, const matrix* a, int repeats, 
                 RUGA_TRY_DONE(ruga_factor_solve(factor, b, x));
                 solves[k * SOLVES + s] = seconds(threads) - begin;
             }
-            RUGA_TRY_DONE(ruga_factor_solve_rough(factor, b, x)); // copies
             for (int s = 0; s < SOLVES; s++) {
                 begin = seconds(threads);
                 RUGA_TRY_DONE(ruga_factor_solve_rough(factor, b, x));
@@ -106,6 +110,7 @@ static ruga_status measure(ruga_factor_kind kind, const matrix* a, int repeats, 
             }
         }
         f->factor[threads - 1] = bench_median(repeats, factors);
+        f->single = threads == 1 ? bench_median(repeats, singles) : f->single;
         f->solve[threads - 1] = bench_median(repeats * SOLVES, solves);
         f->rough[threads - 1] = bench_median(repeats * SOLVES, roughs);
     }
@@ -120,11 +125,12 @@ done:
 
 static void print(const char* name, const matrix* a, const figures* f, double unit) {
     double mega = 1e-6;
-    printf("%-9s %7d %6.2f | %7.2f %7.2f %6.2f %6.2f | %6.3f | %7.4f %5.2f %5.2f | %7.5f %5.1f %5.2f %8.1e | "
+    printf("%-9s %7d %6.2f | %7.2f %7.2f %6.2f %6.2f | %6.3f | %7.4f %5.2f %5.2f %5.2f | %7.5f %5.1f %5.2f %8.1e | "
            "%7.5f %5.1f %5.2f %8.1e | %d %d %d\n",
            name, a->lower->columns, mega * a->lower->start[a->lower->columns], mega * f->info.entries,
            1e-9 * f->info.flops, 1e-9 * f->info.flops / f->factor[0], f->bytes / (8 * f->info.entries),
-           f->analyse, f->factor[0], f->factor[0] / unit, f->factor[0] / f->factor[1], f->solve[0],
+           f->analyse, f->factor[0], f->factor[0] / unit, f->factor[0] / f->factor[1],
+           f->single / f->factor[0], f->solve[0],
            f->factor[0] / f->solve[0], f->solve[0] / f->solve[1], f->residual, f->rough[0],
            f->factor[0] / f->rough[0], f->rough[0] / f->rough[1], f->rough_residual, f->info.positive,
            f->info.negative, f->info.zero);
@@ -184,13 +190,13 @@ static ruga_status bench_size(int unknowns, int repeats) {
     kkt.lower = &skin->kkt;
     RUGA_TRY_DONE(measure(RUGA_FACTOR_CHOLESKY, &plain, repeats, &cholesky));
     print("cholmod", &plain, &cholesky, cholesky.factor[0]);
-    RUGA_TRY_DONE(measure(RUGA_FACTOR_LDL, &plain, repeats, &unclustered));
+    RUGA_TRY_DONE(measure(RUGA_FACTOR_LDL_SINGLE, &plain, repeats, &unclustered));
     print("ldl K+W", &plain, &unclustered, cholesky.factor[0]);
     RUGA_TRY_DONE(ruga_skin_assemble(skin, state->x, 0.5));
-    RUGA_TRY_DONE(measure(RUGA_FACTOR_LDL, &kkt, repeats, &ldl));
+    RUGA_TRY_DONE(measure(RUGA_FACTOR_LDL_SINGLE, &kkt, repeats, &ldl));
     print("ldl KKT", &kkt, &ldl, cholesky.factor[0]);
     RUGA_TRY_DONE(ruga_skin_assemble(skin, state->x, 0));
-    RUGA_TRY_DONE(measure(RUGA_FACTOR_LDL, &kkt, repeats, &exact));
+    RUGA_TRY_DONE(measure(RUGA_FACTOR_LDL_SINGLE, &kkt, repeats, &exact));
     print("ldl exact", &kkt, &exact, cholesky.factor[0]);
 done:
     ruga_release(kkt.node_start);
@@ -208,8 +214,8 @@ int main(int argc, char** argv) {
     static const int usual[] = {3138, 12534, 28194, 86000};
     int repeats = argc > 1 ? atoi(argv[1]) : 5, count = argc > 2 ? argc - 2 : 4;
     repeats = repeats < 1 ? 1 : repeats > MAX_REPEATS ? MAX_REPEATS : repeats;
-    printf("%-9s %7s %6s | %7s %7s %6s %6s | %6s | %7s %5s %5s | %7s %5s %5s %8s | %7s %5s %5s %8s | %s\n",
-           "matrix", "n", "Mnz", "Mfill", "GF", "GF/s", "mem/f", "analys", "factor", "unit", "2 thr", "solve",
+    printf("%-9s %7s %6s | %7s %7s %6s %6s | %6s | %7s %5s %5s %5s | %7s %5s %5s %8s | %7s %5s %5s %8s | %s\n",
+           "matrix", "n", "Mnz", "Mfill", "GF", "GF/s", "mem/f", "analys", "factor", "unit", "2 thr", "singl", "solve",
            "f/s", "2 thr", "residual", "rough", "f/s", "2 thr", "residual", "inertia");
     for (int k = 0; k < count; k++) {
         if (bench_size(argc > 2 ? atoi(argv[2 + k]) : usual[k], repeats) != RUGA_OK) {

@@ -304,7 +304,6 @@ static ruga_status measure_frame(bench* b, int frame) {
     begin = processor();
     RUGA_TRY(ruga_skin_solve(skin, b->gradient, b->answer));
     b->solve[frame] = processor() - begin;
-    RUGA_TRY(ruga_skin_solve_rough(skin, b->gradient, b->answer)); // copies the factor
     begin = processor();
     RUGA_TRY(ruga_skin_solve_rough(skin, b->gradient, b->answer));
     b->rough[frame] = processor() - begin;

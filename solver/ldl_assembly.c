@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 The Ruga authors
+//
+// One front of the multifrontal factorisation (ldl.h), in either precision (ldl_front.h): assembled on the
+// stack from the matrix and the update matrices of its children, factored, and taken apart. Its columns of L
+// are stored, in single precision where the factor is kept so; the update matrix and the columns without a
+// stable pivot stay on the stack.
+#include "solver/ldl_front.h"
+
+#include "core/parallel.h"
+#include "core/wide.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct assembly {
+    ruga_ldl* ldl;
+    task_memory* memory;
+    int s, own, late, below; // pivots of its own, delayed ones of children, rows that stay
+    ruga_front front;
+    size_t base; // of the stack, under the children's updates
+    real* update;
+} assembly;
+
+static const real* delayed_of(const ruga_ldl* f, int c, const real** update, int* late, int* below) {
+    const front_record* r = &f->front[c];
+    *update = (const real*)f->memory[r->task].stack + r->update;
+    *below = r->rows - r->full;
+    *late = r->full - r->eliminated;
+    return *update + ruga_update_size(*below);
+}
+
+static ruga_status reserve_front(assembly* a) {
+    ruga_ldl* f = a->ldl;
+    const ruga_ldl_symbolic* s = &f->symbolic;
+    task_memory* m = a->memory;
+    a->base = m->stack_used;
+    for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
+        a->late += f->front[c].full - f->front[c].eliminated;
+        if (f->front[c].task == f->front[a->s].task && f->front[c].update < a->base) {
+            a->base = f->front[c].update;
+        }
+    }
+    a->own = s->pivot[a->s + 1] - s->pivot[a->s];
+    a->below = (int)(s->row_start[a->s + 1] - s->row_start[a->s]);
+    size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below;
+    size_t update = ruga_update_size(a->below);
+    size_t used = m->stack_used + ruga_front_size(s->top[a->s], full, (size_t)a->below);
+    RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used + rows, sizeof(int)));
+    RUGA_TRY(ruga_ldl_make_room(&m->stack, &m->stack_capacity, used * sizeof(real), 1));
+    a->update = (real*)m->stack + m->stack_used;
+    a->front = (ruga_front){.rows = (int)rows, .full = (int)full};
+    a->front.a = a->update + update;
+    a->front.index = m->index + m->index_used;
+    a->front.pivot = a->front.a + full * rows;
+    a->front.peak = a->front.pivot + 2 * full;
+    a->front.work = a->front.peak + full;
+    a->front.shared = s->top[a->s];
+    a->front.must_finish = s->parent[a->s] < 0;
+    memset(a->update, 0, (update + full * rows) * sizeof(real));
+    memset(a->front.peak, 0, full * sizeof(real));
+    return RUGA_OK;
+}
+
+static void assemble_matrix(assembly* a) {
+    const ruga_ldl_symbolic* s = &a->ldl->symbolic;
+    size_t rows = (size_t)a->front.rows;
+    for (int k = s->entry_start[a->s]; k < s->entry_start[a->s + 1]; k++) {
+        int i = s->entry_row[k], j = s->entry_column[k];
+        a->front.a[(size_t)j * rows + (size_t)(i < a->own ? i : i + a->late)] +=
+            (real)a->ldl->matrix.value[s->entry[k]];
+    }
+    for (int j = 0; j < a->own; j++) {
+        a->front.peak[j] = (real)fabs(a->front.a[(size_t)j * rows + (size_t)j]);
+        a->front.index[j] = s->pivot[a->s] + j;
+    }
+    for (int i = 0; i < a->below; i++) {
+        a->front.index[a->own + a->late + i] = s->row[s->row_start[a->s] + (size_t)i];
+    }
+}
+
+// Adds child c's update matrix: rows and columns at place[], those from `own` on into our own update.
+static void add_update(assembly* a, const int* place, int below, const real* update) {
+    int split = 0;
+    while (split < below && place[split] < a->own) {
+        split++;
+    }
+    for (int j = 0; j < below; j++) {
+        const real* from = update + ruga_update_column(below, j);
+        if (j < split) {
+            real* to = a->front.a + (size_t)place[j] * (size_t)a->front.rows;
+            a->front.peak[place[j]] += (real)fabs(from[j]);
+            for (int i = j; i < split; i++) {
+                to[place[i]] += from[i];
+            }
+            for (int i = split; i < below; i++) {
+                to[place[i] + a->late] += from[i];
+            }
+        } else {
+            real* to = a->update + ruga_update_column(a->below, place[j] - a->own);
+            for (int i = j; i < below; i++) {
+                to[place[i] - a->own] += from[i];
+            }
+        }
+    }
+}
+
+// Places child c's delayed columns at [column, column + late) of our front.
+static void add_delayed(assembly* a, int c, int column, const int* place, int late, int below,
+                        const real* delayed) {
+    const front_record* r = &a->ldl->front[c];
+    const int* index = a->ldl->memory[r->task].index + r->index + r->eliminated;
+    size_t rows = (size_t)a->front.rows, height = (size_t)(late + below);
+    for (int q = 0; q < late; q++) {
+        const real* from = delayed + (size_t)q * height;
+        real* to = a->front.a + (size_t)(column + q) * rows;
+        for (int i = q; i < late; i++) {
+            to[column + i] = from[i];
+        }
+        for (int i = 0; i < below; i++) {
+            if (place[i] < a->own) {
+                a->front.a[(size_t)place[i] * rows + (size_t)(column + q)] = from[late + i];
+            } else {
+                to[place[i] + a->late] = from[late + i];
+            }
+        }
+        a->front.peak[column + q] = delayed[(size_t)late * height + (size_t)q];
+        a->front.index[column + q] = index[q];
+    }
+}
+
+static void assemble_children(assembly* a) {
+    const ruga_ldl* f = a->ldl;
+    int column = a->own;
+    for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
+        const real* update;
+        int late, below;
+        const real* delayed = delayed_of(f, c, &update, &late, &below);
+        const int* place = f->symbolic.place + f->symbolic.row_start[c];
+        add_update(a, place, below, update);
+        add_delayed(a, c, column, place, late, below, delayed);
+        column += late;
+    }
+}
+
+typedef struct update_job {
+    const ruga_front* front;
+    real *work, *update; // work: a tile for each chunk
+} update_job;
+
+static void update_chunk(int begin, int end, int chunk, void* context) {
+    const update_job* job = context;
+    real* work = job->work + (size_t)chunk * RUGA_FRONT_TILE * (size_t)job->front->full;
+    ruga_front_update(job->front, begin, end, work, job->update);
+}
+
+// The fronts at the top are few and large: their tiles are shared out. Below, tasks run side by side.
+static void update_below(assembly* a) {
+    if (a->ldl->symbolic.top[a->s]) {
+        update_job job = {&a->front, a->front.work, a->update};
+        ruga_parallel_for(a->below, RUGA_FRONT_TILE, update_chunk, &job);
+    } else {
+        ruga_front_update(&a->front, 0, a->below, a->front.work, a->update);
+    }
+}
+
+// The strip of columns [4 s, 4 s + 4) below the diagonal, of which there are `done`, into tiles `to`.
+#define DEFINE_STORE(type, store)                                                                            \
+    RUGA_WIDE static void store(const real* a, int rows, int done, type* to) {                               \
+        enum { TILE = RUGA_LDL_TILE };                                                                       \
+        for (int first = 0; first < done; first += TILE) {                                                   \
+            int columns = done - first < TILE ? done - first : TILE;                                         \
+            const real* from = a + (size_t)first * (size_t)rows;                                             \
+            for (int row = first; row < rows; row += TILE, to += TILE * TILE) {                              \
+                if (row > first && columns == TILE && rows - row >= TILE) {                                  \
+                    for (int k = 0; k < TILE; k++) {                                                         \
+                        for (int r = 0; r < TILE; r++) {                                                     \
+                            to[TILE * k + r] = (type)from[(size_t)k * (size_t)rows + (size_t)(row + r)];     \
+                        }                                                                                    \
+                    }                                                                                        \
+                    continue;                                                                                \
+                }                                                                                            \
+                for (int k = 0; k < TILE; k++) {                                                             \
+                    for (int r = 0; r < TILE; r++) {                                                         \
+                        bool below = k < columns && row + r < rows && row + r > first + k;                   \
+                        to[TILE * k + r] =                                                                   \
+                            below ? (type)from[(size_t)k * (size_t)rows + (size_t)(row + r)] : 0;            \
+                    }                                                                                        \
+                }                                                                                            \
+            }                                                                                                \
+        }                                                                                                    \
+    }
+DEFINE_STORE(double, store_double)
+DEFINE_STORE(float, store_float)
+
+static void store_pivots(const ruga_front* f, const ruga_ldl* ldl, void* factor, size_t at) {
+    for (int k = 0; k < 2 * f->eliminated; k++) {
+        if (ldl->single) {
+            ((float*)factor)[at + (size_t)k] = (float)f->pivot[k];
+        } else {
+            ((double*)factor)[at + (size_t)k] = f->pivot[k];
+        }
+    }
+}
+
+static ruga_status store_factor(assembly* a) {
+    const ruga_ldl* ldl = a->ldl;
+    task_memory* m = a->memory;
+    const ruga_front* f = &a->front;
+    size_t size = ruga_ldl_stored_size(f->rows, f->eliminated), begin = m->factor_used;
+    RUGA_TRY(ruga_ldl_make_room(&m->factor, &m->factor_capacity, begin + size,
+                                ldl->single ? sizeof(float) : sizeof(double)));
+    if (ldl->single) {
+        store_float(f->a, f->rows, f->eliminated, (float*)m->factor + begin);
+    } else {
+        store_double(f->a, f->rows, f->eliminated, (double*)m->factor + begin);
+    }
+    m->factor_used = begin + size;
+    store_pivots(f, ldl, m->factor, m->factor_used - 2 * (size_t)f->eliminated);
+    return RUGA_OK;
+}
+
+// Keeps L, and hands on the update matrix and the delayed columns, on the stack in the children's place.
+static ruga_status store_front(assembly* a) {
+    ruga_ldl* ldl = a->ldl;
+    task_memory* m = a->memory;
+    const ruga_front* f = &a->front;
+    size_t update = ruga_update_size(a->below), rows = (size_t)f->rows;
+    size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, height = rows - done;
+    size_t begin = m->factor_used;
+    RUGA_TRY(store_factor(a));
+    real* base = (real*)m->stack + a->base;
+    memmove(base, a->update, update * sizeof(real));
+    real* delayed = base + update; // below the front, whose columns move down one by one
+    for (size_t q = 0; q < late; q++) {
+        memmove(delayed + q * height, f->a + (done + q) * rows + done, height * sizeof(real));
+    }
+    memmove(delayed + late * height, f->peak + done, late * sizeof(real));
+    front_record* record = &ldl->front[a->s];
+    *record = (front_record){.factor = begin,
+                             .index = m->index_used,
+                             .update = a->base,
+                             .task = record->task,
+                             .rows = f->rows,
+                             .full = f->full,
+                             .eliminated = f->eliminated};
+    m->index_used += rows;
+    m->stack_used = a->base + update + late * (height + 1);
+    return RUGA_OK;
+}
+
+// D becomes D^-1; the inverse of a zero pivot is zero, so that its unknown is zero in every solution.
+static void invert_pivots(ruga_front* f) {
+    for (int k = 0; k < f->eliminated; k++) {
+        real* d = f->pivot + 2 * (size_t)k;
+        if (d[1] == 0) {
+            d[0] = d[0] == 0 ? 0 : 1 / d[0];
+            continue;
+        }
+        const double a = d[0], b = d[1], c = d[2], determinant = a * c - b * b;
+        d[0] = (real)(c / determinant);
+        d[1] = (real)(-b / determinant);
+        d[2] = (real)(a / determinant);
+        k++;
+    }
+}
+
+ruga_status ruga_ldl_factor_front(ruga_ldl* f, int s) {
+    assembly a = {.ldl = f, .memory = &f->memory[f->front[s].task], .s = s};
+    task_memory* m = a.memory;
+    RUGA_TRY(reserve_front(&a));
+    assemble_matrix(&a);
+    assemble_children(&a);
+    ruga_front_factor(&a.front);
+    if (a.below > 0 && a.front.eliminated > 0) {
+        update_below(&a);
+    }
+    double w = a.front.eliminated, r = a.front.rows - w;
+    m->entries += w * (w + 1) / 2 + w * r;
+    m->flops += w * r * r + w * w * r + w * w * w / 3;
+    m->positive += a.front.positive;
+    m->negative += a.front.negative;
+    m->zero += a.front.zero;
+    invert_pivots(&a.front);
+    return store_front(&a);
+}
