@@ -1,31 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
-#define _DEFAULT_SOURCE // madvise
 #include "core/memory.h"
 
 #include <limits.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 // Before each block: its size, in one cache line, so that blocks stay 64-byte aligned.
 enum { HEADER = 64 };
-enum { HUGE_PAGE = 2 << 20 };
 
-// Factors are streamed through once for each solve: the pages of large blocks are asked for in the size that costs
-// the fewest misses of the address cache.
 static void* allocate_default(size_t size, void* context) {
     (void)context;
-    size_t alignment = size >= 2 * (size_t)HUGE_PAGE ? HUGE_PAGE : HEADER;
-    size = (size + alignment - 1) / alignment * alignment;
-    void* memory = aligned_alloc(alignment, size);
-#ifdef MADV_HUGEPAGE
-    if (memory && alignment == HUGE_PAGE) {
-        (void)madvise(memory, size, MADV_HUGEPAGE);
-    }
-#endif
-    return memory;
+    return aligned_alloc(HEADER, (size + HEADER - 1) / HEADER * HEADER);
 }
 
 static void free_default(void* memory, size_t size, void* context) {
@@ -50,7 +37,7 @@ size_t ruga_byte_count(void) {
 }
 
 void* ruga_allocate(size_t size) {
-    if (size > SIZE_MAX / 2) {
+    if (size > SIZE_MAX - 2 * (size_t)HEADER) {
         return NULL;
     }
     size_t* block = allocate_function(size + HEADER, allocator_context);
