@@ -3,7 +3,7 @@
 add_library(ruga_options INTERFACE)
 target_include_directories(ruga_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
 target_compile_options(ruga_options INTERFACE -ffp-contract=off
-    $<$<COMPILE_LANGUAGE:C>:-Wall -Wextra -Wpedantic -Wmissing-prototypes -Wvla>
+    $<$<COMPILE_LANGUAGE:C>:-fno-math-errno -fno-trapping-math -Wall -Wextra -Wpedantic -Wmissing-prototypes -Wvla>
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra>)
 if(RUGA_WERROR)
     target_compile_options(ruga_options INTERFACE -Werror)

@@ -20,53 +20,102 @@
 // result.)
 #include "shell/bending.h"
 
-#include "core/vec3.h"
+#include "core/wide.h"
 
 // A triangle collapsed to a needle or a point has no angle, and must only not give infinities: lengths count
 // as at least this part of the triangle's size, and never below 1e-50 m.
 static const double COLLAPSED_SQUARE = 1e-20;
 static const double LEAST_SQUARE = 1e-100;
 
-// |e|^2 and |n|^2 of the edge e and the normal n = e x d, kept above the floors.
-static double safe_length_square(const double e[3], const double d[3]) {
-    return fmax(ruga_dot(e, e), COLLAPSED_SQUARE * ruga_dot(d, d) + LEAST_SQUARE);
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
 }
 
-static double safe_normal_square(const double n[3], const double e[3], const double d[3]) {
-    double size = ruga_dot(e, e) + ruga_dot(d, d);
-    return fmax(ruga_dot(n, n), COLLAPSED_SQUARE * size * size + LEAST_SQUARE);
+// |e|^2 of an edge and |n|^2 of the normal e x d, kept above the floors; size: sum of the edges' squares.
+static inline double safe_length_square(double square, double size) {
+    return larger(square, COLLAPSED_SQUARE * size + LEAST_SQUARE);
 }
 
-double ruga_angle_difference(double a, double b) {
-    double difference = a - b;
-    if (difference > RUGA_PI) {
-        return difference - 2 * RUGA_PI;
+static inline double safe_normal_square(double square, double size) {
+    return larger(square, COLLAPSED_SQUARE * size * size + LEAST_SQUARE);
+}
+
+// Of the triangle with the edges e and d from one corner.
+static inline double size_of(const double e[3], const double d[3]) {
+    return 2 * (ruga_dot(e, e) + ruga_dot(d, d) - ruga_dot(e, d));
+}
+
+RUGA_WIDE void ruga_hinge_lanes_measure(int count, ruga_hinge_lanes* h) {
+    double sine[RUGA_LANES], cosine[RUGA_LANES];
+    for (int i = 0; i < count; i++) {
+        double e[3], d2[3], d3[3], n2[3], n3[3];
+        for (int c = 0; c < 3; c++) {
+            e[c] = h->x[1][c][i] - h->x[0][c][i];
+            d2[c] = h->x[2][c][i] - h->x[0][c][i];
+            d3[c] = h->x[3][c][i] - h->x[0][c][i];
+        }
+        ruga_cross(e, d2, n2);
+        ruga_cross(d3, e, n3);
+        double square = ruga_dot(e, e), length = sqrt(square), size2 = size_of(e, d2), size3 = size_of(e, d3);
+        double s2 = length / safe_normal_square(ruga_dot(n2, n2), size2);
+        double s3 = length / safe_normal_square(ruga_dot(n3, n3), size3);
+        double t2 = ruga_dot(d2, e) / safe_length_square(square, size2);
+        double t3 = ruga_dot(d3, e) / safe_length_square(square, size3);
+        for (int c = 0; c < 3; c++) {
+            double g2 = s2 * n2[c], g3 = s3 * n3[c];
+            h->gradient[0][c][i] = -(1 - t2) * g2 - (1 - t3) * g3;
+            h->gradient[1][c][i] = -t2 * g2 - t3 * g3;
+            h->gradient[2][c][i] = g2;
+            h->gradient[3][c][i] = g3;
+        }
+        // (n3 x n2).e = |e|^2 d3.n2
+        sine[i] = length * ruga_dot(d3, n2);
+        cosine[i] = ruga_dot(n2, n3);
     }
-    return difference > -RUGA_PI ? difference : difference + 2 * RUGA_PI;
+    ruga_lanes_angle(count, sine, cosine, h->angle);
 }
 
 double ruga_hinge_angle(const double* const x[4], double gradient[4][3]) {
-    double e[3], d2[3], d3[3], n2[3], n3[3];
-    ruga_subtract(x[1], x[0], e);
-    ruga_subtract(x[2], x[0], d2);
-    ruga_subtract(x[3], x[0], d3);
-    ruga_cross(e, d2, n2);
-    ruga_cross(d3, e, n3);
-    double length = ruga_norm(e);
-    if (gradient) {
-        double s2 = length / safe_normal_square(n2, e, d2), s3 = length / safe_normal_square(n3, e, d3);
-        double t2 = ruga_dot(d2, e) / safe_length_square(e, d2);
-        double t3 = ruga_dot(d3, e) / safe_length_square(e, d3);
+    ruga_hinge_lanes one;
+    for (int i = 0; i < 4; i++) {
         for (int c = 0; c < 3; c++) {
-            double g2 = s2 * n2[c], g3 = s3 * n3[c];
-            gradient[0][c] = -(1 - t2) * g2 - (1 - t3) * g3;
-            gradient[1][c] = -t2 * g2 - t3 * g3;
-            gradient[2][c] = g2;
-            gradient[3][c] = g3;
+            one.x[i][c][0] = x[i][c];
         }
     }
-    // (n3 x n2).e = |e|^2 d3.n2
-    return atan2(length * ruga_dot(d3, n2), ruga_dot(n2, n3));
+    ruga_hinge_lanes_measure(1, &one);
+    if (gradient) {
+        ruga_lanes_store(1, 4, one.gradient, gradient[0]);
+    }
+    return one.angle[0];
+}
+
+RUGA_WIDE void ruga_hinge_lanes_add(int count, double (*const restrict moment)[RUGA_LANES],
+                                    ruga_triangle_lanes* restrict t) {
+    for (int i = 0; i < count; i++) {
+        double e[3][3], n[3], w[3] = {0, 0, 0};
+        for (int c = 0; c < 3; c++) {
+            e[0][c] = t->x[1][c][i] - t->x[0][c][i];
+            e[1][c] = t->x[2][c][i] - t->x[1][c][i];
+            e[2][c] = t->x[0][c][i] - t->x[2][c][i];
+        }
+        ruga_cross(e[0], e[1], n);
+        double square[3] = {ruga_dot(e[0], e[0]), ruga_dot(e[1], e[1]), ruga_dot(e[2], e[2])};
+        double size = square[0] + square[1] + square[2];
+        double per_square = 1 / safe_normal_square(ruga_dot(n, n), size);
+        for (int k = 0; k < 3; k++) {
+            int next = (k + 1) % 3, across = (k + 2) % 3;
+            double force = moment[k][i] * sqrt(square[k]) * per_square;
+            double along = -ruga_dot(e[across], e[k]) / safe_length_square(square[k], size);
+            w[k] -= (1 - along) * force;
+            w[next] -= along * force;
+            w[across] += force;
+        }
+        for (int k = 0; k < 3; k++) {
+            for (int c = 0; c < 3; c++) {
+                t->gradient[k][c][i] += w[k] * n[c];
+            }
+        }
+    }
 }
 
 // Every block above is a n^T + n b^T with the triangle's n. Adds the a and b of the six blocks, times the
@@ -79,7 +128,7 @@ static void add_edge(const double* const x[3], int i, const double n[3], double 
     double e[3], d[3], m[3];
     ruga_subtract(x[corner[1]], x[corner[0]], e);
     ruga_subtract(x[corner[2]], x[corner[0]], d);
-    double square = safe_length_square(e, d);
+    double square = safe_length_square(ruga_dot(e, e), size_of(e, d));
     double length = sqrt(square);
     double t = ruga_dot(d, e) / square, s = 1 - t;
     ruga_cross(n, e, m);
@@ -117,7 +166,7 @@ void ruga_hinge_add_hessian(const double* const x[3], const double moment[3],
     ruga_subtract(x[1], x[0], e);
     ruga_subtract(x[2], x[0], d);
     ruga_cross(e, d, n);
-    double normal_length = sqrt(safe_normal_square(n, e, d));
+    double normal_length = sqrt(safe_normal_square(ruga_dot(n, n), size_of(e, d)));
     for (int c = 0; c < 3; c++) {
         n[c] /= normal_length;
     }

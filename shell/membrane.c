@@ -22,6 +22,7 @@
 #include "shell/membrane.h"
 
 #include "core/vec3.h"
+#include "core/wide.h"
 
 // Fibres are never this short in a sensible state; larger values would change results, smaller ones make a
 // collapsed triangle needlessly stiff sideways.
@@ -88,37 +89,32 @@ typedef struct point {
     double energy;
 } point;
 
-static void set_fibre(bool baraff_witkin, point* p, int a, double* strain, double* measure) {
-    double square = ruga_dot(p->w[a], p->w[a]);
-    *measure = 1;
-    p->z[a] = 0;
-    *strain = 0.5 * (square - 1);
-    if (baraff_witkin) {
-        double length = sqrt(square);
-        bool regular = length >= LENGTH_FLOOR;
-        *measure = regular ? length : LENGTH_FLOOR;
-        *strain = (regular ? length : 0.5 * (square / LENGTH_FLOOR + LENGTH_FLOOR)) - 1;
-        p->z[a] = regular;
-    }
+static inline void set_fibre(bool baraff_witkin, point* p, int a, double* strain, double* measure) {
+    double square = ruga_dot(p->w[a], p->w[a]), length = sqrt(square);
+    bool regular = length >= LENGTH_FLOOR;
+    double floored = regular ? length : LENGTH_FLOOR;
+    double stretch = regular ? length : 0.5 * (square / LENGTH_FLOOR + LENGTH_FLOOR);
+    *measure = baraff_witkin ? floored : 1;
+    *strain = baraff_witkin ? stretch - 1 : 0.5 * (square - 1);
+    p->z[a] = baraff_witkin && regular ? 1 : 0;
     double scale = 1 / *measure;
     for (int c = 0; c < 3; c++) {
         p->f[a][c] = scale * p->w[a][c];
     }
 }
 
-static void evaluate(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
-                     const double* const x[3], point* p) {
-    double e1[3], e2[3];
-    ruga_subtract(x[1], x[0], e1);
-    ruga_subtract(x[2], x[0], e2);
+// e1, e2: from corner 0 to the others.
+static inline void evaluate_edges(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
+                                  const double e1[3], const double e2[3], point* p) {
+    bool baraff_witkin = kind == RUGA_MEMBRANE_BARAFF_WITKIN;
     for (int a = 0; a < 2; a++) {
         for (int c = 0; c < 3; c++) {
             p->w[a][c] = rest->slope[0][a] * e1[c] + rest->slope[1][a] * e2[c];
         }
     }
     double eu, ev, mu, mv;
-    set_fibre(kind == RUGA_MEMBRANE_BARAFF_WITKIN, p, 0, &eu, &mu);
-    set_fibre(kind == RUGA_MEMBRANE_BARAFF_WITKIN, p, 1, &ev, &mv);
+    set_fibre(baraff_witkin, p, 0, &eu, &mu);
+    set_fibre(baraff_witkin, p, 1, &ev, &mv);
     double slant = ruga_dot(p->w[0], p->w[1]);
     p->stress[0] = rest->stretch * (eu + poisson * ev) / mu;
     p->stress[1] = rest->shear * slant;
@@ -127,18 +123,77 @@ static void evaluate(ruga_membrane kind, double poisson, const ruga_membrane_res
         0.5 * (rest->stretch * (eu * eu + ev * ev + 2 * poisson * eu * ev) + rest->shear * slant * slant);
 }
 
+static void evaluate(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
+                     const double* const x[3], point* p) {
+    double e1[3], e2[3];
+    ruga_subtract(x[1], x[0], e1);
+    ruga_subtract(x[2], x[0], e2);
+    evaluate_edges(kind, poisson, rest, e1, e2, p);
+}
+
+typedef struct rest_lanes {
+    double slope[2][2][RUGA_LANES], stretch[RUGA_LANES], shear[RUGA_LANES];
+} rest_lanes;
+
+static inline void evaluate_lanes(ruga_membrane kind, double poisson, int count,
+                                  const rest_lanes* restrict rest, ruga_triangle_lanes* restrict t,
+                                  double* restrict energy) {
+    for (int i = 0; i < count; i++) {
+        const ruga_membrane_rest own = {
+            {{rest->slope[0][0][i], rest->slope[0][1][i]}, {rest->slope[1][0][i], rest->slope[1][1][i]}},
+            rest->stretch[i],
+            rest->shear[i]};
+        double e1[3], e2[3];
+        point p;
+        for (int c = 0; c < 3; c++) {
+            e1[c] = t->x[1][c][i] - t->x[0][c][i];
+            e2[c] = t->x[2][c][i] - t->x[0][c][i];
+        }
+        evaluate_edges(kind, poisson, &own, e1, e2, &p);
+        for (int c = 0; c < 3; c++) {
+            double pu = p.stress[0] * p.w[0][c] + p.stress[1] * p.w[1][c];
+            double pv = p.stress[1] * p.w[0][c] + p.stress[2] * p.w[1][c];
+            double g1 = own.slope[0][0] * pu + own.slope[0][1] * pv;
+            double g2 = own.slope[1][0] * pu + own.slope[1][1] * pv;
+            t->gradient[0][c][i] = -(g1 + g2);
+            t->gradient[1][c][i] = g1;
+            t->gradient[2][c][i] = g2;
+        }
+        energy[i] = p.energy;
+    }
+}
+
+RUGA_WIDE void ruga_membrane_lanes_energy(ruga_membrane kind, double poisson, int count,
+                                          const ruga_membrane_rest* rest, ruga_triangle_lanes* t,
+                                          double* energy) {
+    rest_lanes r;
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < 4; k++) {
+            r.slope[k / 2][k % 2][i] = rest[i].slope[k / 2][k % 2];
+        }
+        r.stretch[i] = rest[i].stretch;
+        r.shear[i] = rest[i].shear;
+    }
+    // A loop each, in which nothing asks for the kind.
+    if (kind == RUGA_MEMBRANE_BARAFF_WITKIN) {
+        evaluate_lanes(RUGA_MEMBRANE_BARAFF_WITKIN, poisson, count, &r, t, energy);
+    } else {
+        evaluate_lanes(RUGA_MEMBRANE_STVK, poisson, count, &r, t, energy);
+    }
+}
+
 double ruga_membrane_energy(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
                             const double* const x[3], double gradient[3][3]) {
-    point p;
-    evaluate(kind, poisson, rest, x, &p);
-    for (int c = 0; c < 3; c++) {
-        double pu = p.stress[0] * p.w[0][c] + p.stress[1] * p.w[1][c];
-        double pv = p.stress[1] * p.w[0][c] + p.stress[2] * p.w[1][c];
-        gradient[1][c] = rest->slope[0][0] * pu + rest->slope[0][1] * pv;
-        gradient[2][c] = rest->slope[1][0] * pu + rest->slope[1][1] * pv;
-        gradient[0][c] = -(gradient[1][c] + gradient[2][c]);
+    ruga_triangle_lanes one;
+    double energy;
+    for (int i = 0; i < 3; i++) {
+        for (int c = 0; c < 3; c++) {
+            one.x[i][c][0] = x[i][c];
+        }
     }
-    return p.energy;
+    ruga_membrane_lanes_energy(kind, poisson, 1, rest, &one, &energy);
+    ruga_lanes_store(1, 3, one.gradient, gradient[0]);
+    return energy;
 }
 
 // Multiplies the negative eigenvalues of [[a[0], a[1]], [a[1], a[2]]] by (1 - clamp). The projector on the

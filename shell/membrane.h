@@ -5,6 +5,7 @@
 #ifndef RUGA_SHELL_MEMBRANE_H
 #define RUGA_SHELL_MEMBRANE_H
 
+#include "core/lanes.h"
 #include "core/status.h"
 #include "ruga/types.h"
 
@@ -30,6 +31,16 @@ double ruga_membrane_grown_length(const double* const x[3], const double edge[3]
 // Returns the energy, J, and sets its gradient for the three corners.
 double ruga_membrane_energy(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
                             const double* const x[3], double gradient[3][3]);
+
+// Triangles side by side.
+typedef struct ruga_triangle_lanes {
+    double x[3][3][RUGA_LANES];
+    double gradient[3][3][RUGA_LANES];
+} ruga_triangle_lanes;
+
+// The same for `count` of them, rest [count]; energy [count] is set.
+void ruga_membrane_lanes_energy(ruga_membrane kind, double poisson, int count, const ruga_membrane_rest* rest,
+                                ruga_triangle_lanes* triangles, double* energy);
 
 // Sets the lower blocks, row by row, of the Hessian; clamp as in ruga_shell_energy.
 void ruga_membrane_hessian(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
