@@ -18,13 +18,13 @@
 #include <stdint.h>
 #include <string.h>
 
-static inline uint64_t bits_of(double a) {
+RUGA_WIDE_PART uint64_t bits_of(double a) {
     uint64_t bits;
     memcpy(&bits, &a, sizeof bits);
     return bits;
 }
 
-static inline double from_bits(uint64_t bits) {
+RUGA_WIDE_PART double from_bits(uint64_t bits) {
     double a;
     memcpy(&a, &bits, sizeof a);
     return a;

@@ -22,6 +22,9 @@ void ruga_hinge_lanes_measure(int count, ruga_hinge_lanes* hinges);
 // for the edge from corner i to corner i + 1.
 void ruga_hinge_lanes_add(int count, double (*const moment)[RUGA_LANES], ruga_triangle_lanes* triangles);
 
+// Adds to the triangles' blocks the parts that they have in the Hessians of their edges' angles, times the moments.
+void ruga_hinge_lanes_add_hessian(int count, double (*const moment)[RUGA_LANES], ruga_triangle_lanes* triangles);
+
 // Angle in (-pi, pi] between the two triangles of an interior edge, 0 when flat, positive where both turn
 // towards the side that their normals point to. x: start and end of the edge, the corner opposite it in the
 // triangle that runs start -> end, the corner opposite it in the other. `gradient` for these may be NULL.
@@ -35,9 +38,7 @@ static inline double ruga_angle_difference(double a, double b) {
     return difference + turn;
 }
 
-// Adds to the lower blocks of a triangle's 9 x 9 matrix the sum over its edges of moment[i] times the part of
-// the Hessian of the angle at edge i (from corner i to corner i + 1) that this triangle brings.
-void ruga_hinge_add_hessian(const double* const x[3], const double moment[3],
-                            double block[RUGA_TRIANGLE_BLOCKS][9]);
+// Sets the lower blocks of the same sum for one triangle.
+void ruga_hinge_hessian(const double* const x[3], const double moment[3], double block[RUGA_TRIANGLE_BLOCKS][9]);
 
 #endif

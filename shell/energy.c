@@ -105,7 +105,7 @@ typedef struct bends {
 } bends;
 
 // p of the hinge, see thickness.c.
-static inline void pull_of(const ruga_hinge_lanes* h, const bends* b, int i, double pull[4][3]) {
+RUGA_WIDE_PART void pull_of(const ruga_hinge_lanes* h, const bends* b, int i, double pull[4][3]) {
     double e[3], d2[3], d3[3], n[3], along_e[3], along_d[3];
     for (int c = 0; c < 3; c++) {
         e[c] = h->x[1][c][i] - h->x[0][c][i];
@@ -235,19 +235,16 @@ RUGA_WIDE static void add_triangles(int count, const ruga_triangle_lanes* restri
     }
 }
 
-// Adds what the hinges pull at triangles.
-static void bend_triangles(const ruga_shell* shell, int f, int count, ruga_triangle_lanes* t) {
-    double moment[3][RUGA_LANES], pull[RUGA_LANES];
+// What the hinges do to triangles, times `scale`: moments at their edges, and their part in p as ruga_thickness_lanes_add
+// wants it.
+static void load_moments(const ruga_shell* shell, int f, int count, double scale, double (*moment)[RUGA_LANES],
+                         double* pull) {
     for (int i = 0; i < count; i++) {
         double own[3], bend = edge_moments(shell, f + i, own);
-        pull[i] = shell->thickness ? bend * shell->thickness[f + i][1] : 0;
+        pull[i] = shell->thickness ? scale * bend * shell->thickness[f + i][1] : 0;
         for (int k = 0; k < 3; k++) {
-            moment[k][i] = own[k];
+            moment[k][i] = scale * own[k];
         }
-    }
-    ruga_hinge_lanes_add(count, moment, t);
-    if (shell->thickness) {
-        ruga_thickness_lanes_add(count, pull, t);
     }
 }
 
@@ -257,14 +254,18 @@ static void triangle_energies(int begin, int end, int chunk, void* context) {
     sums sum = {{0}, {0}};
     for (int f = begin; f < end; f += RUGA_LANES) {
         ruga_triangle_lanes t;
-        double energy[RUGA_LANES];
+        double energy[RUGA_LANES], moment[3][RUGA_LANES], pull[RUGA_LANES];
         int count = lanes_from(f, end);
         ruga_lanes_load(count, 3, shell->triangle[f], p->x, t.x);
         ruga_membrane_lanes_energy(shell->membrane, shell->poisson, count, shell->triangle_rest + f, &t,
                                    energy);
         add_triangles(count, &t, energy, &sum);
         if (p->gradient) {
-            bend_triangles(shell, f, count, &t);
+            load_moments(shell, f, count, 1, moment, pull);
+            ruga_hinge_lanes_add(count, moment, &t);
+            if (shell->thickness) {
+                ruga_thickness_lanes_add(count, pull, &t);
+            }
             ruga_lanes_store(count, 3, t.gradient, shell->triangle_gradient[f][0]);
         }
     }
@@ -300,20 +301,18 @@ static void triangle_hessians(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const pass* p = context;
     const ruga_shell* shell = p->shell;
-    for (int f = begin; f < end; f++) {
-        const double* x[3];
-        double moment[3], bend = edge_moments(shell, f, moment);
-        ruga_triangle_corners(shell->triangle[f], p->x, x);
-        ruga_membrane_hessian(shell->membrane, shell->poisson, &shell->triangle_rest[f], x, p->clamp,
-                              shell->triangle_block[f]);
-        for (int i = 0; i < 3; i++) {
-            moment[i] *= 1 - p->clamp;
-        }
-        ruga_hinge_add_hessian(x, moment, shell->triangle_block[f]);
+    for (int f = begin; f < end; f += RUGA_LANES) {
+        ruga_triangle_lanes t;
+        double moment[3][RUGA_LANES], pull[RUGA_LANES];
+        int count = lanes_from(f, end);
+        ruga_lanes_load(count, 3, shell->triangle[f], p->x, t.x);
+        load_moments(shell, f, count, 1 - p->clamp, moment, pull);
+        ruga_membrane_lanes_hessian(shell->membrane, shell->poisson, count, shell->triangle_rest + f, p->clamp, &t);
+        ruga_hinge_lanes_add_hessian(count, moment, &t);
         if (shell->thickness) {
-            ruga_thickness_add_hessian(shell->thickness_power, shell->thickness[f][1], x,
-                                       (1 - p->clamp) * bend, shell->triangle_block[f]);
+            ruga_thickness_lanes_add_hessian(count, shell->thickness_power, pull, &t);
         }
+        ruga_triangle_lanes_blocks(count, &t, shell->triangle_block + f);
     }
 }
 

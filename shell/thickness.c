@@ -32,7 +32,7 @@ double ruga_thickness_power(double poisson) {
 }
 
 // From corner 0 to the others.
-static inline void edges(const ruga_triangle_lanes* t, int i, double u[3], double v[3]) {
+RUGA_WIDE_PART void edges(const ruga_triangle_lanes* t, int i, double u[3], double v[3]) {
     for (int c = 0; c < 3; c++) {
         u[c] = t->x[1][c][i] - t->x[0][c][i];
         v[c] = t->x[2][c][i] - t->x[0][c][i];
@@ -80,26 +80,34 @@ RUGA_WIDE void ruga_thickness_lanes_add(int count, const double* restrict scale,
     }
 }
 
-void ruga_thickness_add_hessian(double power, double slope, const double* const x[3], double scale,
-                                double block[RUGA_TRIANGLE_BLOCKS][9]) {
-    if (slope == 0) {
-        return;
+RUGA_WIDE_PART void add_block(const double d[3], const double other_d[3], const double skew[9], const double g[3],
+                             const double other_g[3], double first, double second, double (*block)[RUGA_LANES],
+                             int lane) {
+    double dot = ruga_dot(d, other_d);
+    for (int k = 0; k < 9; k++) {
+        int row = k / 3, column = k % 3;
+        double part = (row == column ? dot : skew[k]) - other_d[row] * d[column];
+        block[k][lane] += first * part + second * g[row] * other_g[column];
     }
-    double c[3], d[3][3], g[3][3];
-    ruga_triangle_normal(x[0], x[1], x[2], c);
-    double first = scale * slope, second = -2 * (power + 1) * first / ruga_dot(c, c);
-    const double skew[9] = {0, -c[2], c[1], c[2], 0, -c[0], -c[1], c[0], 0}; // v -> c x v
-    for (int i = 0; i < 3; i++) {
-        ruga_subtract(x[(i + 2) % 3], x[(i + 1) % 3], d[i]);
-        ruga_cross(c, d[i], g[i]);
-    }
-    for (int b = 0; b < RUGA_TRIANGLE_BLOCKS; b++) {
-        int i = ruga_triangle_block_corner[b][0], j = ruga_triangle_block_corner[b][1];
-        double dot = ruga_dot(d[i], d[j]), e = i == j ? 0 : j == (i + 2) % 3 ? 1 : -1;
-        for (int k = 0; k < 9; k++) {
-            int row = k / 3, column = k % 3;
-            block[b][k] += first * ((row == column) * dot - d[j][row] * d[i][column] + e * skew[k]) +
-                           second * g[i][row] * g[j][column];
+}
+
+RUGA_WIDE void ruga_thickness_lanes_add_hessian(int count, double power, const double* restrict scale,
+                                                ruga_triangle_lanes* restrict t) {
+    for (int i = 0; i < count; i++) {
+        double u[3], v[3], c[3], g[2][3], d[2][3], square;
+        edges(t, i, u, v);
+        ruga_cross(u, v, c);
+        square = ruga_dot(c, c);
+        for (int k = 0; k < 3; k++) {
+            d[0][k] = -v[k];
+            d[1][k] = u[k];
         }
+        ruga_cross(c, d[0], g[0]);
+        ruga_cross(c, d[1], g[1]);
+        double second = -2 * (power + 1) * scale[i] / (square > 0 ? square : 1);
+        const double none[9] = {0}, skew[9] = {0, -c[2], c[1], c[2], 0, -c[0], -c[1], c[0], 0}; // v -> c x v
+        add_block(d[0], d[0], none, g[0], g[0], scale[i], second, t->block[0], i);
+        add_block(d[1], d[0], skew, g[1], g[0], scale[i], second, t->block[1], i);
+        add_block(d[1], d[1], none, g[1], g[1], scale[i], second, t->block[2], i);
     }
 }

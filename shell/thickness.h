@@ -17,9 +17,7 @@ void ruga_thickness_lanes_stiffness(int count, double power, const double* rest_
 // Adds scale[i] / z times the gradient of s to the triangles' gradients.
 void ruga_thickness_lanes_add(int count, const double* scale, ruga_triangle_lanes* triangles);
 
-// Adds `scale` times the Hessian of s, whose slope is given, to the lower blocks of a triangle's 9 x 9
-// matrix.
-void ruga_thickness_add_hessian(double power, double slope, const double* const x[3], double scale,
-                                double block[RUGA_TRIANGLE_BLOCKS][9]);
+// Adds scale[i] / z times the Hessian of s to the triangles' blocks.
+void ruga_thickness_lanes_add_hessian(int count, double power, const double* scale, ruga_triangle_lanes* triangles);
 
 #endif
