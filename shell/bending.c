@@ -118,18 +118,20 @@ RUGA_WIDE void ruga_hinge_lanes_add(int count, double (*const restrict moment)[R
     }
 }
 
-// Every block above is a n^T + n b^T with the triangle's n. Adds the a and b of the blocks (1, 1), (2, 1) and (2, 2),
-// times the moment, for the edge e from corner `edge` to the next; last: the edge that ends where e begins.
-RUGA_WIDE_PART void add_edge(int edge, const double e[3], const double last[3], const double n[3], double normal_square,
-                            double size, double moment, double a[3][3], double b[3][3]) {
+// Every block above is a n^T + n b^T with the triangle's n. Adds the a and b of the blocks (1, 1), (2, 1) and
+// (2, 2), times the moment, for the edge e from corner `edge` to the next; last: the edge that ends where e
+// begins.
+RUGA_WIDE_PART void add_edge(int edge, const double e[3], const double last[3], const double n[3],
+                             double normal_square, double size, double moment, double a[3][3],
+                             double b[3][3]) {
     double m[3], square = safe_length_square(ruga_dot(e, e), size), length = sqrt(square);
     double t = -ruga_dot(last, e) / square, s = 1 - t;
     ruga_cross(n, e, m);
-    double along = moment * length / normal_square;              // of m / h^2
-    double slide = moment / (length * sqrt(normal_square));      // of R = e n^T / (L^2 h)
-    double p = 0.5 * normal_square / (square * square);          // P = p M
-    // Factors of M, R and R^T: of the edge's beginning, its end, and the corner across, each with itself; and of
-    // each with the one before, row first.
+    double along = moment * length / normal_square;         // of m / h^2
+    double slide = moment / (length * sqrt(normal_square)); // of R = e n^T / (L^2 h)
+    double p = 0.5 * normal_square / (square * square);     // P = p M
+    // Factors of M, R and R^T: of the edge's beginning, its end, and the corner across, each with itself; and
+    // of each with the one before, row first.
     const double own[3][3] = {{-s * s - p, -s, -s}, {-t * t - p, t, t}, {-1, 0, 0}};
     const double before[3][3] = {{s, 0, 1}, {p - t * s, -t, s}, {t, -1, 0}};
     const double* factor[3] = {own[(4 - edge) % 3], before[(5 - edge) % 3], own[(5 - edge) % 3]};
@@ -141,8 +143,8 @@ RUGA_WIDE_PART void add_edge(int edge, const double e[3], const double last[3], 
     }
 }
 
-RUGA_WIDE_PART void add_block(const double a[3], const double b[3], const double n[3], double (*block)[RUGA_LANES],
-                             int lane) {
+RUGA_WIDE_PART void add_block(const double a[3], const double b[3], const double n[3],
+                              double (*block)[RUGA_LANES], int lane) {
     for (int k = 0; k < 9; k++) {
         block[k][lane] += a[k / 3] * n[k % 3] + n[k / 3] * b[k % 3];
     }
@@ -170,7 +172,8 @@ RUGA_WIDE void ruga_hinge_lanes_add_hessian(int count, double (*const restrict m
     }
 }
 
-void ruga_hinge_hessian(const double* const x[3], const double moment[3], double block[RUGA_TRIANGLE_BLOCKS][9]) {
+void ruga_hinge_hessian(const double* const x[3], const double moment[3],
+                        double block[RUGA_TRIANGLE_BLOCKS][9]) {
     ruga_triangle_lanes one;
     double own[3][RUGA_LANES];
     ruga_triangle_lanes_set(&one, x);

@@ -22,8 +22,10 @@ void ruga_hinge_lanes_measure(int count, ruga_hinge_lanes* hinges);
 // for the edge from corner i to corner i + 1.
 void ruga_hinge_lanes_add(int count, double (*const moment)[RUGA_LANES], ruga_triangle_lanes* triangles);
 
-// Adds to the triangles' blocks the parts that they have in the Hessians of their edges' angles, times the moments.
-void ruga_hinge_lanes_add_hessian(int count, double (*const moment)[RUGA_LANES], ruga_triangle_lanes* triangles);
+// Adds to the triangles' blocks the parts that they have in the Hessians of their edges' angles, times the
+// moments.
+void ruga_hinge_lanes_add_hessian(int count, double (*const moment)[RUGA_LANES],
+                                  ruga_triangle_lanes* triangles);
 
 // Angle in (-pi, pi] between the two triangles of an interior edge, 0 when flat, positive where both turn
 // towards the side that their normals point to. x: start and end of the edge, the corner opposite it in the
@@ -39,6 +41,7 @@ static inline double ruga_angle_difference(double a, double b) {
 }
 
 // Sets the lower blocks of the same sum for one triangle.
-void ruga_hinge_hessian(const double* const x[3], const double moment[3], double block[RUGA_TRIANGLE_BLOCKS][9]);
+void ruga_hinge_hessian(const double* const x[3], const double moment[3],
+                        double block[RUGA_TRIANGLE_BLOCKS][9]);
 
 #endif

@@ -235,10 +235,10 @@ RUGA_WIDE static void add_triangles(int count, const ruga_triangle_lanes* restri
     }
 }
 
-// What the hinges do to triangles, times `scale`: moments at their edges, and their part in p as ruga_thickness_lanes_add
-// wants it.
-static void load_moments(const ruga_shell* shell, int f, int count, double scale, double (*moment)[RUGA_LANES],
-                         double* pull) {
+// What the hinges do to triangles, times `scale`: moments at their edges, and their part in p as
+// ruga_thickness_lanes_add wants it.
+static void load_moments(const ruga_shell* shell, int f, int count, double scale,
+                         double (*moment)[RUGA_LANES], double* pull) {
     for (int i = 0; i < count; i++) {
         double own[3], bend = edge_moments(shell, f + i, own);
         pull[i] = shell->thickness ? scale * bend * shell->thickness[f + i][1] : 0;
@@ -307,7 +307,8 @@ static void triangle_hessians(int begin, int end, int chunk, void* context) {
         int count = lanes_from(f, end);
         ruga_lanes_load(count, 3, shell->triangle[f], p->x, t.x);
         load_moments(shell, f, count, 1 - p->clamp, moment, pull);
-        ruga_membrane_lanes_hessian(shell->membrane, shell->poisson, count, shell->triangle_rest + f, p->clamp, &t);
+        ruga_membrane_lanes_hessian(shell->membrane, shell->poisson, count, shell->triangle_rest + f,
+                                    p->clamp, &t);
         ruga_hinge_lanes_add_hessian(count, moment, &t);
         if (shell->thickness) {
             ruga_thickness_lanes_add_hessian(count, shell->thickness_power, pull, &t);

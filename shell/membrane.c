@@ -105,7 +105,7 @@ RUGA_WIDE_PART void set_fibre(bool baraff_witkin, point* p, int a, double* strai
 
 // e1, e2: from corner 0 to the others.
 RUGA_WIDE_PART void evaluate_edges(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
-                                  const double e1[3], const double e2[3], point* p) {
+                                   const double e1[3], const double e2[3], point* p) {
     bool baraff_witkin = kind == RUGA_MEMBRANE_BARAFF_WITKIN;
     for (int a = 0; a < 2; a++) {
         for (int c = 0; c < 3; c++) {
@@ -146,8 +146,8 @@ RUGA_WIDE_PART void load_rest(int count, const ruga_membrane_rest* rest, rest_la
 }
 
 // Rest data and state of lane i.
-RUGA_WIDE_PART void evaluate_lane(ruga_membrane kind, double poisson, const rest_lanes* r, const ruga_triangle_lanes* t,
-                                 int i, ruga_membrane_rest* rest, point* p) {
+RUGA_WIDE_PART void evaluate_lane(ruga_membrane kind, double poisson, const rest_lanes* r,
+                                  const ruga_triangle_lanes* t, int i, ruga_membrane_rest* rest, point* p) {
     double e1[3], e2[3];
     for (int k = 0; k < 4; k++) {
         rest->slope[k / 2][k % 2] = r->slope[k / 2][k % 2][i];
@@ -162,7 +162,7 @@ RUGA_WIDE_PART void evaluate_lane(ruga_membrane kind, double poisson, const rest
 }
 
 RUGA_WIDE_PART void set_energies(ruga_membrane kind, double poisson, int count, const rest_lanes* restrict r,
-                                ruga_triangle_lanes* restrict t, double* restrict energy) {
+                                 ruga_triangle_lanes* restrict t, double* restrict energy) {
     for (int i = 0; i < count; i++) {
         ruga_membrane_rest rest;
         point p;
@@ -181,7 +181,8 @@ RUGA_WIDE_PART void set_energies(ruga_membrane kind, double poisson, int count, 
 }
 
 RUGA_WIDE void ruga_membrane_lanes_energy(ruga_membrane kind, double poisson, int count,
-                                          const ruga_membrane_rest* rest, ruga_triangle_lanes* t, double* energy) {
+                                          const ruga_membrane_rest* rest, ruga_triangle_lanes* t,
+                                          double* energy) {
     rest_lanes r;
     load_rest(count, rest, &r);
     // A loop each, in which nothing asks for the kind.
@@ -224,8 +225,9 @@ RUGA_WIDE_PART void scale_negative(double clamp, double a[3]) {
 }
 
 RUGA_WIDE_PART void set_block(double (*left)[3], double (*right)[3], const double s[3], const double n[2],
-                             const double other[2], double (*block)[RUGA_LANES], int lane) {
-    double geometric = n[0] * (s[0] * other[0] + s[1] * other[1]) + n[1] * (s[1] * other[0] + s[2] * other[1]);
+                              const double other[2], double (*block)[RUGA_LANES], int lane) {
+    double geometric =
+        n[0] * (s[0] * other[0] + s[1] * other[1]) + n[1] * (s[1] * other[0] + s[2] * other[1]);
     for (int k = 0; k < 9; k++) {
         int r = k / 3, c = k % 3;
         double sum = left[0][r] * right[0][c] + left[1][r] * right[1][c] + left[2][r] * right[2][c];
@@ -233,8 +235,9 @@ RUGA_WIDE_PART void set_block(double (*left)[3], double (*right)[3], const doubl
     }
 }
 
-RUGA_WIDE_PART void set_hessians(ruga_membrane kind, double poisson, int count, const rest_lanes* restrict lanes,
-                                double clamp, ruga_triangle_lanes* restrict t) {
+RUGA_WIDE_PART void set_hessians(ruga_membrane kind, double poisson, int count,
+                                 const rest_lanes* restrict lanes, double clamp,
+                                 ruga_triangle_lanes* restrict t) {
     for (int lane = 0; lane < count; lane++) {
         ruga_membrane_rest rest;
         point p;
@@ -243,8 +246,8 @@ RUGA_WIDE_PART void set_hessians(ruga_membrane kind, double poisson, int count, 
         scale_negative(clamp, s);
         double q[3] = {rest.stretch - p.z[0] * s[0], rest.stretch * poisson, rest.stretch - p.z[1] * s[2]};
         scale_negative(clamp, q);
-        // Derivatives of e_u, e_v and w_u.w_v with respect to each corner; `left` holds q times the first two and
-        // the shear stiffness times the last.
+        // Derivatives of e_u, e_v and w_u.w_v with respect to each corner; `left` holds q times the first two
+        // and the shear stiffness times the last.
         double right[2][3][3], left[2][3][3], (*n)[2] = rest.slope;
         for (int i = 0; i < 2; i++) {
             for (int c = 0; c < 3; c++) {
@@ -264,7 +267,8 @@ RUGA_WIDE_PART void set_hessians(ruga_membrane kind, double poisson, int count, 
 }
 
 RUGA_WIDE void ruga_membrane_lanes_hessian(ruga_membrane kind, double poisson, int count,
-                                           const ruga_membrane_rest* rest, double clamp, ruga_triangle_lanes* t) {
+                                           const ruga_membrane_rest* rest, double clamp,
+                                           ruga_triangle_lanes* t) {
     rest_lanes r;
     load_rest(count, rest, &r);
     if (kind == RUGA_MEMBRANE_BARAFF_WITKIN) {
@@ -274,7 +278,8 @@ RUGA_WIDE void ruga_membrane_lanes_hessian(ruga_membrane kind, double poisson, i
     }
 }
 
-void ruga_triangle_lanes_blocks(int count, const ruga_triangle_lanes* t, double (*block)[RUGA_TRIANGLE_BLOCKS][9]) {
+void ruga_triangle_lanes_blocks(int count, const ruga_triangle_lanes* t,
+                                double (*block)[RUGA_TRIANGLE_BLOCKS][9]) {
     for (int i = 0; i < count; i++) {
         double(*b)[9] = block[i];
         for (int k = 0; k < 9; k++) {

@@ -46,8 +46,9 @@ void ruga_membrane_lanes_energy(ruga_membrane kind, double poisson, int count, c
                                 ruga_triangle_lanes* triangles, double* energy);
 
 // Sets the blocks; clamp as in ruga_shell_energy.
-void ruga_membrane_lanes_hessian(ruga_membrane kind, double poisson, int count, const ruga_membrane_rest* rest,
-                                 double clamp, ruga_triangle_lanes* triangles);
+void ruga_membrane_lanes_hessian(ruga_membrane kind, double poisson, int count,
+                                 const ruga_membrane_rest* rest, double clamp,
+                                 ruga_triangle_lanes* triangles);
 
 // The lower blocks, those of corner 0 from the others: no energy changes where all corners move alike.
 void ruga_triangle_lanes_blocks(int count, const ruga_triangle_lanes* triangles,

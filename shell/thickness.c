@@ -80,9 +80,9 @@ RUGA_WIDE void ruga_thickness_lanes_add(int count, const double* restrict scale,
     }
 }
 
-RUGA_WIDE_PART void add_block(const double d[3], const double other_d[3], const double skew[9], const double g[3],
-                             const double other_g[3], double first, double second, double (*block)[RUGA_LANES],
-                             int lane) {
+RUGA_WIDE_PART void add_block(const double d[3], const double other_d[3], const double skew[9],
+                              const double g[3], const double other_g[3], double first, double second,
+                              double (*block)[RUGA_LANES], int lane) {
     double dot = ruga_dot(d, other_d);
     for (int k = 0; k < 9; k++) {
         int row = k / 3, column = k % 3;

@@ -18,6 +18,7 @@ void ruga_thickness_lanes_stiffness(int count, double power, const double* rest_
 void ruga_thickness_lanes_add(int count, const double* scale, ruga_triangle_lanes* triangles);
 
 // Adds scale[i] / z times the Hessian of s to the triangles' blocks.
-void ruga_thickness_lanes_add_hessian(int count, double power, const double* scale, ruga_triangle_lanes* triangles);
+void ruga_thickness_lanes_add_hessian(int count, double power, const double* scale,
+                                      ruga_triangle_lanes* triangles);
 
 #endif

@@ -536,13 +536,12 @@ static ruga_status factorize(ruga_skin* skin, double shift, bool in_single) {
     return RUGA_OK;
 }
 
-ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
+static ruga_status assemble(ruga_skin* skin, const double* x, double clamp) {
     double begin = ruga_clock();
     const ruga_model* model = skin->model;
     const ruga_sparse* pattern = ruga_shell_pattern(skin->shell);
-    ruga_shell_energies shell;
     double external = 0;
-    RUGA_TRY(ruga_shell_energy(skin->shell, x, clamp, &shell, NULL, skin->stiffness));
+    RUGA_TRY(ruga_shell_energy(skin->shell, x, clamp, NULL, NULL, skin->stiffness));
     if (skin->coupling) {
         ruga_shell_coupling(skin->shell, skin->coupling);
     }
@@ -556,7 +555,14 @@ ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
     for (int j = 0; j < skin->n && skin->proximal > 0; j++) {
         skin->stiffness[pattern->start[j]] += skin->proximal * model->vertex_area[j / 3];
     }
-    if (model->solves_skin) {
+    skin->work.seconds_assembly += ruga_clock() - begin;
+    return RUGA_OK;
+}
+
+ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
+    RUGA_TRY(assemble(skin, x, clamp));
+    double begin = ruga_clock();
+    if (skin->model->solves_skin) {
         fill_kkt(skin, 0);
     }
     skin->work.seconds_assembly += ruga_clock() - begin;
@@ -564,7 +570,7 @@ ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
 }
 
 ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift) {
-    RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
+    RUGA_TRY(assemble(skin, x, clamp));
     RUGA_TRY(factorize(skin, shift, false));
     skin->factor_exact = clamp == 0 && shift == 0;
     return RUGA_OK;
@@ -577,7 +583,7 @@ ruga_status ruga_skin_refactor(ruga_skin* skin, double shift) {
 
 // Without a shift and in single precision, in half of the time: an initial inverse, whose inertia certifies nothing.
 static ruga_status factor_single(ruga_skin* skin, const double* x, double clamp) {
-    RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
+    RUGA_TRY(assemble(skin, x, clamp));
     RUGA_TRY(factorize(skin, 0, true));
     skin->single_serves = skin->single_serves && skin->info.zero == 0;
     skin->factor_exact = false;
