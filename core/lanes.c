@@ -15,6 +15,7 @@
 #include "core/vec3.h"
 #include "core/wide.h"
 
+#include <float.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -34,8 +35,11 @@ RUGA_WIDE void ruga_lanes_angle(int count, const double* restrict y, const doubl
                                 double* restrict angle) {
     const double split = 0.41421356237309503;                                // tan(pi/8)
     const double quarter = 0.7853981633974483, rest = 3.061616997868383e-17; // of pi: their sum
+    const double most = DBL_MAX / 4;
     for (int i = 0; i < count; i++) {
         double ax = fabs(x[i]), ay = fabs(y[i]);
+        ax = ax > most ? most : ax; // where they have overflowed, an angle all the same
+        ay = ay > most ? most : ay;
         double a = ay < ax ? ay : ax, b = ay < ax ? ax : ay;
         double high = a > split * b ? 1 : 0, steep = ay > ax ? 1 : 0, left = x[i] < 0 ? 1 : 0;
         double top = high != 0 ? b - a : a, bottom = high != 0 ? b + a : b;

@@ -71,12 +71,46 @@ static void thicknesses(int begin, int end, int chunk, void* context) {
 
 // ---- hinges --------------------------------------------------------------------------------------------
 
-static void measure_hinges(const pass* p, int h, int count, ruga_hinge_lanes* lanes) {
-    ruga_lanes_load(count, 4, p->shell->hinge[h], p->x, lanes->x);
-    ruga_hinge_lanes_measure(count, lanes);
+typedef struct bends {
+    double stiffness[RUGA_LANES], rest[RUGA_LANES]; // k, theta0
+    double factor[RUGA_LANES];                      // s
+    double slope[2][RUGA_LANES];                    // k/2 times that of either triangle's s
+    double angle[RUGA_LANES], moment[RUGA_LANES];   // theta - theta0, k s (theta - theta0)
+    double bend[RUGA_LANES];                        // k/4 (theta - theta0)^2
+    double q[4][3][RUGA_LANES];
+} bends;
+
+RUGA_WIDE static void set_moments(int count, const ruga_hinge_lanes* restrict h, bends* restrict b) {
     for (int i = 0; i < count; i++) {
-        lanes->angle[i] = ruga_angle_difference(lanes->angle[i], p->shell->hinge_rest[h + i].angle);
+        double angle = ruga_angle_difference(h->angle[i], b->rest[i]);
+        b->angle[i] = angle;
+        b->moment[i] = b->stiffness[i] * b->factor[i] * angle;
+        b->bend[i] = 0.25 * b->stiffness[i] * angle * angle;
     }
+}
+
+static void load_stiffness(const ruga_shell* shell, int h, int count, bends* b) {
+    for (int i = 0; i < count; i++) {
+        b->stiffness[i] = shell->hinge_rest[h + i].stiffness;
+        b->rest[i] = shell->hinge_rest[h + i].angle;
+        if (shell->thickness) {
+            const double* one = shell->thickness[shell->hinge_side[h + i][0]];
+            const double* other = shell->thickness[shell->hinge_side[h + i][1]];
+            b->factor[i] = 0.5 * (one[0] + other[0]);
+            b->slope[0][i] = 0.5 * b->stiffness[i] * one[1];
+            b->slope[1][i] = 0.5 * b->stiffness[i] * other[1];
+        } else {
+            b->factor[i] = 1;
+            b->slope[0][i] = b->slope[1][i] = 0;
+        }
+    }
+}
+
+static void measure_hinges(const pass* p, int h, int count, ruga_hinge_lanes* lanes, bends* b) {
+    ruga_lanes_load(count, 4, p->shell->hinge[h], p->x, lanes->x);
+    load_stiffness(p->shell, h, count, b);
+    ruga_hinge_lanes_measure(count, lanes);
+    set_moments(count, lanes, b);
 }
 
 static void hinge_angles(int begin, int end, int chunk, void* context) {
@@ -84,9 +118,10 @@ static void hinge_angles(int begin, int end, int chunk, void* context) {
     const pass* p = context;
     for (int h = begin; h < end; h += RUGA_LANES) {
         ruga_hinge_lanes lanes;
+        bends b;
         int count = lanes_from(h, end);
-        measure_hinges(p, h, count, &lanes);
-        memcpy(p->shell->hinge_angle + h, lanes.angle, (size_t)count * sizeof lanes.angle[0]);
+        measure_hinges(p, h, count, &lanes, &b);
+        memcpy(p->shell->hinge_angle + h, b.angle, (size_t)count * sizeof b.angle[0]);
     }
 }
 
@@ -96,13 +131,6 @@ static void settle_directors(pass* p) {
     ruga_parallel_for(p->shell->hinge_count, RUGA_SHELL_CHUNK, hinge_angles, p);
     ruga_directors_settle(&directors, p->shell->hinge_angle, p->shell->hinge_moment);
 }
-
-typedef struct bends {
-    double stiffness[RUGA_LANES]; // k
-    double slope[2][RUGA_LANES];  // k/2 times that of either triangle's s
-    double moment[RUGA_LANES];    // k s (theta - theta0)
-    double q[4][3][RUGA_LANES];
-} bends;
 
 // p of the hinge, see thickness.c.
 RUGA_WIDE_PART void pull_of(const ruga_hinge_lanes* h, const bends* b, int i, double pull[4][3]) {
@@ -133,7 +161,7 @@ RUGA_WIDE_PART void pull_of(const ruga_hinge_lanes* h, const bends* b, int i, do
 RUGA_WIDE static void add_hinges(int count, const ruga_hinge_lanes* restrict h, const bends* restrict b,
                                  sums* restrict sum) {
     for (int i = 0; i < count; i++) {
-        double pull[4][3], square = 0, angle = h->angle[i], moment = b->moment[i];
+        double pull[4][3], square = 0, angle = b->angle[i], moment = b->moment[i];
         pull_of(h, b, i, pull);
         for (int k = 0; k < 4; k++) {
             double force[3];
@@ -147,32 +175,15 @@ RUGA_WIDE static void add_hinges(int count, const ruga_hinge_lanes* restrict h, 
     }
 }
 
-RUGA_WIDE static void set_q(int count, double clamp, const ruga_hinge_lanes* restrict h,
-                            const double* restrict factor, bends* restrict b) {
+RUGA_WIDE static void set_q(int count, double clamp, const ruga_hinge_lanes* restrict h, bends* restrict b) {
     for (int i = 0; i < count; i++) {
-        double pull[4][3], half = 0.5 * b->stiffness[i] * factor[i], mixed = (1 - clamp) * h->angle[i];
+        double pull[4][3], half = 0.5 * b->stiffness[i] * b->factor[i], mixed = (1 - clamp) * b->angle[i];
         pull_of(h, b, i, pull);
         for (int k = 0; k < 4; k++) {
             for (int c = 0; c < 3; c++) {
                 b->q[k][c][i] = half * h->gradient[k][c][i] + mixed * pull[k][c];
             }
         }
-    }
-}
-
-// k, slopes, and s.
-static void load_stiffness(const ruga_shell* shell, int h, int count, bends* b, double* factor) {
-    for (int i = 0; i < count; i++) {
-        double half = 0.5 * shell->hinge_rest[h + i].stiffness;
-        const double *a = NULL, *c = NULL;
-        b->stiffness[i] = 2 * half;
-        if (shell->thickness) {
-            a = shell->thickness[shell->hinge_side[h + i][0]];
-            c = shell->thickness[shell->hinge_side[h + i][1]];
-        }
-        factor[i] = a ? 0.5 * (a[0] + c[0]) : 1;
-        b->slope[0][i] = a ? half * a[1] : 0;
-        b->slope[1][i] = a ? half * c[1] : 0;
     }
 }
 
@@ -183,24 +194,21 @@ static void hinge_energies(int begin, int end, int chunk, void* context) {
     for (int h = begin; h < end; h += RUGA_LANES) {
         ruga_hinge_lanes lanes;
         bends b;
-        double factor[RUGA_LANES];
         int count = lanes_from(h, end);
-        measure_hinges(p, h, count, &lanes);
-        load_stiffness(shell, h, count, &b, factor);
-        for (int i = 0; i < count; i++) { // with directors, by settle_directors
-            b.moment[i] = shell->has_directors ? shell->hinge_moment[h + i]
-                                               : b.stiffness[i] * factor[i] * lanes.angle[i];
-            shell->hinge_moment[h + i] = b.moment[i];
+        size_t size = (size_t)count * sizeof(double);
+        measure_hinges(p, h, count, &lanes, &b);
+        if (shell->has_directors) {
+            memcpy(b.moment, shell->hinge_moment + h, size); // by settle_directors
+        } else {
+            memcpy(shell->hinge_moment + h, b.moment, size);
         }
-        for (int i = 0; i < count && shell->thickness; i++) {
-            shell->hinge_bend[h + i] = 0.25 * b.stiffness[i] * lanes.angle[i] * lanes.angle[i];
-        }
+        memcpy(shell->hinge_bend + h, b.bend, size);
         add_hinges(count, &lanes, &b, &sum);
         if (p->hessian || shell->has_directors) {
             ruga_lanes_store(count, 4, lanes.gradient, shell->hinge_gradient[h][0]);
         }
         if (p->hessian && !shell->has_directors) {
-            set_q(count, p->clamp, &lanes, factor, &b);
+            set_q(count, p->clamp, &lanes, &b);
             ruga_lanes_store(count, 4, b.q, shell->hinge_q[h][0]);
         }
     }
@@ -208,20 +216,6 @@ static void hinge_energies(int begin, int end, int chunk, void* context) {
 }
 
 // ---- triangles -----------------------------------------------------------------------------------------
-
-// The hinges of a triangle's edges: their moments, and the sum of (theta - theta0)^2 k/4.
-static double edge_moments(const ruga_shell* shell, int f, double moment[3]) {
-    double bend = 0;
-    for (int i = 0; i < 3; i++) {
-        moment[i] = 0;
-        for (int h = shell->triangle_hinge[f][i]; h >= 0;
-             h = shell->next_hinge ? shell->next_hinge[h][shell->hinge_side[h][1] == f] : -1) {
-            moment[i] += shell->hinge_moment[h];
-            bend += shell->thickness ? shell->hinge_bend[h] : 0;
-        }
-    }
-    return bend;
-}
 
 RUGA_WIDE static void add_triangles(int count, const ruga_triangle_lanes* restrict t,
                                     const double* restrict energy, sums* restrict sum) {
@@ -235,16 +229,30 @@ RUGA_WIDE static void add_triangles(int count, const ruga_triangle_lanes* restri
     }
 }
 
-// What the hinges do to triangles, times `scale`: moments at their edges, and their part in p as
+// Further hinges at the edge of hinge h.
+static void add_next_hinges(const ruga_shell* shell, int f, int h, double* moment, double* bend) {
+    while (h >= 0 && (h = shell->next_hinge[h][shell->hinge_side[h][1] == f]) >= 0) {
+        *moment += shell->hinge_moment[h];
+        *bend += shell->hinge_bend[h];
+    }
+}
+
+// What the hinges at their edges do to triangles, times `scale`: moments, and their part in p as
 // ruga_thickness_lanes_add wants it.
 static void load_moments(const ruga_shell* shell, int f, int count, double scale,
                          double (*moment)[RUGA_LANES], double* pull) {
     for (int i = 0; i < count; i++) {
-        double own[3], bend = edge_moments(shell, f + i, own);
-        pull[i] = shell->thickness ? scale * bend * shell->thickness[f + i][1] : 0;
+        double bend = 0;
         for (int k = 0; k < 3; k++) {
-            moment[k][i] = scale * own[k];
+            int h = shell->triangle_hinge[f + i][k];
+            double sum = h < 0 ? 0 : shell->hinge_moment[h];
+            bend += h < 0 ? 0 : shell->hinge_bend[h];
+            if (shell->next_hinge) {
+                add_next_hinges(shell, f + i, h, &sum, &bend);
+            }
+            moment[k][i] = scale * sum;
         }
+        pull[i] = shell->thickness ? scale * bend * shell->thickness[f + i][1] : 0;
     }
 }
 

@@ -366,6 +366,7 @@ static ruga_status allocate(ruga_shell* shell) {
     RUGA_TRY(RUGA_NEW(shell->triangle_block, triangles));
     RUGA_TRY(RUGA_NEW(shell->hinge_gradient, hinges));
     RUGA_TRY(RUGA_NEW(shell->hinge_moment, hinges));
+    RUGA_TRY(RUGA_NEW(shell->hinge_bend, hinges));
     if (shell->has_directors) {
         RUGA_TRY(RUGA_NEW(shell->hinge_angle, hinges));
     } else {
@@ -373,7 +374,6 @@ static ruga_status allocate(ruga_shell* shell) {
     }
     if (shell->thickness_power != 0) {
         RUGA_TRY(RUGA_NEW(shell->thickness, triangles));
-        RUGA_TRY(RUGA_NEW(shell->hinge_bend, hinges));
     }
     int most = triangles > hinges ? triangles : hinges;
     return RUGA_NEW(shell->partial, ruga_chunk_count(most, RUGA_SHELL_CHUNK));
