@@ -229,30 +229,30 @@ RUGA_WIDE static void add_triangles(int count, const ruga_triangle_lanes* restri
     }
 }
 
-// Further hinges at the edge of hinge h.
-static void add_next_hinges(const ruga_shell* shell, int f, int h, double* moment, double* bend) {
-    while (h >= 0 && (h = shell->next_hinge[h][shell->hinge_side[h][1] == f]) >= 0) {
-        *moment += shell->hinge_moment[h];
-        *bend += shell->hinge_bend[h];
-    }
-}
-
-// What the hinges at their edges do to triangles, times `scale`: moments, and their part in p as
-// ruga_thickness_lanes_add wants it.
-static void load_moments(const ruga_shell* shell, int f, int count, double scale,
-                         double (*moment)[RUGA_LANES], double* pull) {
+// What the hinges at their edges do to triangles: moments, and their part in p as ruga_thickness_lanes_add
+// wants it.
+static void load_moments(const ruga_shell* shell, int f, int count, double (*moment)[RUGA_LANES],
+                         double* pull) {
+    const double *moment_of = shell->hinge_moment, *bend_of = shell->hinge_bend;
     for (int i = 0; i < count; i++) {
         double bend = 0;
         for (int k = 0; k < 3; k++) {
             int h = shell->triangle_hinge[f + i][k];
-            double sum = h < 0 ? 0 : shell->hinge_moment[h];
-            bend += h < 0 ? 0 : shell->hinge_bend[h];
-            if (shell->next_hinge) {
-                add_next_hinges(shell, f + i, h, &sum, &bend);
-            }
-            moment[k][i] = scale * sum;
+            moment[k][i] = h < 0 ? 0 : moment_of[h];
+            bend += h < 0 ? 0 : bend_of[h];
         }
-        pull[i] = shell->thickness ? scale * bend * shell->thickness[f + i][1] : 0;
+        pull[i] = bend;
+    }
+    // Further hinges at the same edges.
+    for (int k = 0; k < 3 * count && shell->next_hinge; k++) {
+        int i = k / 3, h = shell->triangle_hinge[f + i][k % 3];
+        while (h >= 0 && (h = shell->next_hinge[h][shell->hinge_side[h][1] == f + i]) >= 0) {
+            moment[k % 3][i] += moment_of[h];
+            pull[i] += bend_of[h];
+        }
+    }
+    for (int i = 0; i < count && shell->thickness; i++) {
+        pull[i] *= shell->thickness[f + i][1];
     }
 }
 
@@ -269,7 +269,7 @@ static void triangle_energies(int begin, int end, int chunk, void* context) {
                                    energy);
         add_triangles(count, &t, energy, &sum);
         if (p->gradient) {
-            load_moments(shell, f, count, 1, moment, pull);
+            load_moments(shell, f, count, moment, pull);
             ruga_hinge_lanes_add(count, moment, &t);
             if (shell->thickness) {
                 ruga_thickness_lanes_add(count, pull, &t);
@@ -314,7 +314,13 @@ static void triangle_hessians(int begin, int end, int chunk, void* context) {
         double moment[3][RUGA_LANES], pull[RUGA_LANES];
         int count = lanes_from(f, end);
         ruga_lanes_load(count, 3, shell->triangle[f], p->x, t.x);
-        load_moments(shell, f, count, 1 - p->clamp, moment, pull);
+        load_moments(shell, f, count, moment, pull);
+        for (int i = 0; i < count; i++) {
+            for (int k = 0; k < 3; k++) {
+                moment[k][i] *= 1 - p->clamp;
+            }
+            pull[i] *= 1 - p->clamp;
+        }
         ruga_membrane_lanes_hessian(shell->membrane, shell->poisson, count, shell->triangle_rest + f,
                                     p->clamp, &t);
         ruga_hinge_lanes_add_hessian(count, moment, &t);

@@ -150,7 +150,8 @@ static void angles_are_those_of_atan2(void** state) {
     enum { EDGES = sizeof edge_x / sizeof edge_x[0] };
     ruga_lanes_angle(EDGES, edge_y, edge_x, angle);
     for (int i = 0; i < EDGES; i++) {
-        assert_near(angle[i], atan2(edge_y[i], edge_x[i]), 6e-16 * fabs(atan2(edge_y[i], edge_x[i])) + 1e-300);
+        assert_near(angle[i], atan2(edge_y[i], edge_x[i]),
+                    6e-16 * fabs(atan2(edge_y[i], edge_x[i])) + 1e-300);
     }
     ruga_lanes_angle(2, (const double[2]){NAN, 1}, (const double[2]){1, NAN}, angle);
     assert_true(isnan(angle[0]) && isnan(angle[1]));
