@@ -187,6 +187,15 @@ RUGA_WIDE static void set_q(int count, double clamp, const ruga_hinge_lanes* res
     }
 }
 
+static void store_products(int count, const ruga_hinge_lanes* h, const bends* b, double (*to)[2][4][3]) {
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < 12; k++) {
+            to[i][0][k / 3][k % 3] = h->gradient[k / 3][k % 3][i];
+            to[i][1][k / 3][k % 3] = b->q[k / 3][k % 3][i];
+        }
+    }
+}
+
 static void hinge_energies(int begin, int end, int chunk, void* context) {
     const pass* p = context;
     const ruga_shell* shell = p->shell;
@@ -204,12 +213,11 @@ static void hinge_energies(int begin, int end, int chunk, void* context) {
         }
         memcpy(shell->hinge_bend + h, b.bend, size);
         add_hinges(count, &lanes, &b, &sum);
-        if (p->hessian || shell->has_directors) {
+        if (shell->has_directors) {
             ruga_lanes_store(count, 4, lanes.gradient, shell->hinge_gradient[h][0]);
-        }
-        if (p->hessian && !shell->has_directors) {
+        } else if (p->hessian) {
             set_q(count, p->clamp, &lanes, &b);
-            ruga_lanes_store(count, 4, b.q, shell->hinge_q[h][0]);
+            store_products(count, &lanes, &b, shell->hinge_product + h);
         }
     }
     end_chunk(shell, chunk, &sum);
@@ -437,8 +445,9 @@ static void gather_hessian(int begin, int end, int chunk, void* context) {
             for (int k = shell->has_directors ? 0 : hinges->start[b];
                  !shell->has_directors && k < hinges->start[b + 1]; k++) {
                 int h = hinges->item[k] / 16, pair = hinges->item[k] % 16;
-                add_product(1, shell->hinge_gradient[h][pair / 4], shell->hinge_q[h][pair % 4], sum);
-                add_product(1, shell->hinge_q[h][pair / 4], shell->hinge_gradient[h][pair % 4], sum);
+                double(*g)[3] = shell->hinge_product[h][0], (*q)[3] = shell->hinge_product[h][1];
+                add_product(1, g[pair / 4], q[pair % 4], sum);
+                add_product(1, q[pair / 4], g[pair % 4], sum);
             }
             // Column c begins at its diagonal: it lacks the first c entries of the first block.
             int number = b - shell->block_start[v];

@@ -364,13 +364,13 @@ static ruga_status allocate(ruga_shell* shell) {
     RUGA_TRY(RUGA_NEW_ZERO(shell->vertex_mass, shell->vertex_count));
     RUGA_TRY(RUGA_NEW(shell->triangle_gradient, triangles));
     RUGA_TRY(RUGA_NEW(shell->triangle_block, triangles));
-    RUGA_TRY(RUGA_NEW(shell->hinge_gradient, hinges));
     RUGA_TRY(RUGA_NEW(shell->hinge_moment, hinges));
     RUGA_TRY(RUGA_NEW(shell->hinge_bend, hinges));
     if (shell->has_directors) {
+        RUGA_TRY(RUGA_NEW(shell->hinge_gradient, hinges));
         RUGA_TRY(RUGA_NEW(shell->hinge_angle, hinges));
     } else {
-        RUGA_TRY(RUGA_NEW(shell->hinge_q, hinges));
+        RUGA_TRY(RUGA_NEW(shell->hinge_product, hinges));
     }
     if (shell->thickness_power != 0) {
         RUGA_TRY(RUGA_NEW(shell->thickness, triangles));
@@ -433,7 +433,7 @@ void ruga_shell_destroy(ruga_shell** shell) {
     ruga_release(s->rest_area);
     ruga_release(s->thickness);
     ruga_release(s->hinge_bend);
-    ruga_release(s->hinge_q);
+    ruga_release(s->hinge_product);
     ruga_release(s->vertex_mass);
     ruga_sparse_clear(&s->pattern);
     ruga_release(s->block_start);

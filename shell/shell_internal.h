@@ -44,8 +44,8 @@ struct ruga_shell {
     // Scratch of ruga_shell_energy, which writes here although the shell is const.
     double (*triangle_gradient)[3][3];                 // [F]
     double (*triangle_block)[RUGA_TRIANGLE_BLOCKS][9]; // [F]
-    double (*hinge_gradient)[4][3];                    // [H] of the angle
-    double (*hinge_q)[4][3];                           // [H] without directors
+    double (*hinge_gradient)[4][3];                    // [H] of the angle, with directors
+    double (*hinge_product)[2][4][3];                  // [H] gradient of the angle, and q, without directors
     double* hinge_moment;                              // [H] k s (theta - theta0)
     double* hinge_angle;                               // [H] theta - theta0, with directors
     double* hinge_bend;                                // [H] k/4 (theta - theta0)^2
