@@ -55,7 +55,7 @@ RUGA_WIDE static void measure(int count, const double* restrict rest_area,
 
 void ruga_thickness_lanes_stiffness(int count, double power, const double* rest_area,
                                     const ruga_triangle_lanes* t, double (*thickness)[2]) {
-    double square[RUGA_LANES], ratio[RUGA_LANES], stiffness[RUGA_LANES];
+    double square[RUGA_LANES] = {0}, ratio[RUGA_LANES] = {0}, stiffness[RUGA_LANES] = {0};
     measure(count, rest_area, t, square, ratio);
     ruga_lanes_power(count, ratio, -power, stiffness);
     for (int i = 0; i < count; i++) {
