@@ -31,8 +31,8 @@ RUGA_WIDE_PART double from_bits(uint64_t bits) {
     return a;
 }
 
-RUGA_WIDE void ruga_lanes_angle(int count, const double* restrict y, const double* restrict x,
-                                double* restrict angle) {
+RUGA_WIDE static void set_angles(int count, const double* restrict y, const double* restrict x,
+                                 double* restrict angle) {
     const double split = 0.41421356237309503;                                // tan(pi/8)
     const double quarter = 0.7853981633974483, rest = 3.061616997868383e-17; // of pi: their sum
     const double most = DBL_MAX / 4;
@@ -59,8 +59,12 @@ RUGA_WIDE void ruga_lanes_angle(int count, const double* restrict y, const doubl
     }
 }
 
-RUGA_WIDE void ruga_lanes_power(int count, const double* restrict value, double power,
-                                double* restrict result) {
+void ruga_lanes_angle(int count, const double* y, const double* x, double* angle) {
+    set_angles(count, y, x, angle);
+}
+
+RUGA_WIDE static void set_powers(int count, const double* restrict value, double power,
+                                 double* restrict result) {
     const double log2_high = 0.69314718055989033,
                  log2_low = 5.4979230187083712e-14; // their sum; high: 42 bits
     const uint64_t root_half = 0x3fe6a09e667f3bcdu, one = 0x3ff0000000000000u, magic = 0x4330000000000000u;
@@ -83,4 +87,8 @@ RUGA_WIDE void ruga_lanes_power(int count, const double* restrict value, double 
                    r4 * r4 * (2.7620075880100385e-07 + 2.5100375832651221e-08 * r);
         result[i] = from_bits(bits_of(1 + (r + r2 * e)) + (bits_of(shifted) << 52));
     }
+}
+
+void ruga_lanes_power(int count, const double* value, double power, double* result) {
+    set_powers(count, value, power, result);
 }

@@ -12,6 +12,10 @@
 // cache.
 enum { RUGA_LANES = 32 };
 
+static inline int ruga_lanes_from(int first, int end) {
+    return end - first < RUGA_LANES ? end - first : RUGA_LANES;
+}
+
 // Vectors of three at `corners` indices of each element, side by side.
 static inline void ruga_lanes_load(int count, int corners, const int* index, const double* x,
                                    double (*to)[3][RUGA_LANES]) {

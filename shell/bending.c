@@ -45,8 +45,8 @@ RUGA_WIDE_PART double size_of(const double e[3], const double d[3]) {
     return 2 * (ruga_dot(e, e) + ruga_dot(d, d) - ruga_dot(e, d));
 }
 
-RUGA_WIDE void ruga_hinge_lanes_measure(int count, ruga_hinge_lanes* h) {
-    double sine[RUGA_LANES], cosine[RUGA_LANES];
+RUGA_WIDE static void measure(int count, ruga_hinge_lanes* restrict h, double* restrict sine,
+                              double* restrict cosine) {
     for (int i = 0; i < count; i++) {
         double e[3], d2[3], d3[3], n2[3], n3[3];
         for (int c = 0; c < 3; c++) {
@@ -72,7 +72,12 @@ RUGA_WIDE void ruga_hinge_lanes_measure(int count, ruga_hinge_lanes* h) {
         sine[i] = length * ruga_dot(d3, n2);
         cosine[i] = ruga_dot(n2, n3);
     }
-    ruga_lanes_angle(count, sine, cosine, h->angle);
+}
+
+void ruga_hinge_lanes_measure(int count, ruga_hinge_lanes* hinges) {
+    double sine[RUGA_LANES] = {0}, cosine[RUGA_LANES] = {0};
+    measure(count, hinges, sine, cosine);
+    ruga_lanes_angle(count, sine, cosine, hinges->angle);
 }
 
 double ruga_hinge_angle(const double* const x[4], double gradient[4][3]) {
@@ -89,8 +94,8 @@ double ruga_hinge_angle(const double* const x[4], double gradient[4][3]) {
     return one.angle[0];
 }
 
-RUGA_WIDE void ruga_hinge_lanes_add(int count, double (*const restrict moment)[RUGA_LANES],
-                                    ruga_triangle_lanes* restrict t) {
+RUGA_WIDE static void add_moments(int count, double (*const restrict moment)[RUGA_LANES],
+                                  ruga_triangle_lanes* restrict t) {
     for (int i = 0; i < count; i++) {
         double e[3][3], n[3], w[3] = {0, 0, 0};
         for (int c = 0; c < 3; c++) {
@@ -116,6 +121,10 @@ RUGA_WIDE void ruga_hinge_lanes_add(int count, double (*const restrict moment)[R
             }
         }
     }
+}
+
+void ruga_hinge_lanes_add(int count, double (*const moment)[RUGA_LANES], ruga_triangle_lanes* triangles) {
+    add_moments(count, moment, triangles);
 }
 
 // Every block above is a n^T + n b^T with the triangle's n. Adds the a and b of the blocks (1, 1), (2, 1) and
@@ -150,8 +159,8 @@ RUGA_WIDE_PART void add_block(const double a[3], const double b[3], const double
     }
 }
 
-RUGA_WIDE void ruga_hinge_lanes_add_hessian(int count, double (*const restrict moment)[RUGA_LANES],
-                                            ruga_triangle_lanes* restrict t) {
+RUGA_WIDE static void add_hessians(int count, double (*const restrict moment)[RUGA_LANES],
+                                   ruga_triangle_lanes* restrict t) {
     for (int i = 0; i < count; i++) {
         double e[3][3], n[3], a[3][3] = {{0}}, b[3][3] = {{0}};
         for (int k = 0; k < 9; k++) {
@@ -170,6 +179,11 @@ RUGA_WIDE void ruga_hinge_lanes_add_hessian(int count, double (*const restrict m
         add_block(a[1], b[1], n, t->block[1], i);
         add_block(a[2], b[2], n, t->block[2], i);
     }
+}
+
+void ruga_hinge_lanes_add_hessian(int count, double (*const moment)[RUGA_LANES],
+                                  ruga_triangle_lanes* triangles) {
+    add_hessians(count, moment, triangles);
 }
 
 void ruga_hinge_hessian(const double* const x[3], const double moment[3],

@@ -13,7 +13,7 @@
 // The Hessian of a hinge is k s grad grad^T + k s (theta - theta0) H, and H splits into one part for each of
 // the two triangles; these are added to the matrices of the triangles. So are those of s. So each triangle
 // writes a 9 x 9 matrix, and a hinge's own part, with the mixed one, is made when it is gathered:
-//   grad q^T + q grad^T,  q = k s/2 grad + (theta - theta0) p.
+//   grad q^T + q grad^T,  q = k s/2 grad + (1 - clamp) (theta - theta0) p.
 //
 // With directors (directors.c) a hinge's moment is not its stiffness times its angle but comes from all of
 // them. The part w grad t Q (w grad t)^T couples the three hinges of a triangle with one another and with its
@@ -52,17 +52,13 @@ static void end_chunk(const ruga_shell* shell, int chunk, const sums* s) {
     shell->partial[chunk][1] = force_square;
 }
 
-static int lanes_from(int first, int end) {
-    return end - first < RUGA_LANES ? end - first : RUGA_LANES;
-}
-
 static void thicknesses(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const pass* p = context;
     const ruga_shell* shell = p->shell;
     for (int f = begin; f < end; f += RUGA_LANES) {
         ruga_triangle_lanes t;
-        int count = lanes_from(f, end);
+        int count = ruga_lanes_from(f, end);
         ruga_lanes_load(count, 3, shell->triangle[f], p->x, t.x);
         ruga_thickness_lanes_stiffness(count, shell->thickness_power, shell->rest_area + f, &t,
                                        shell->thickness + f);
@@ -74,7 +70,7 @@ static void thicknesses(int begin, int end, int chunk, void* context) {
 typedef struct bends {
     double stiffness[RUGA_LANES], rest[RUGA_LANES]; // k, theta0
     double factor[RUGA_LANES];                      // s
-    double slope[2][RUGA_LANES];                    // k/2 times that of either triangle's s
+    double slope[2][RUGA_LANES];                    // k/2 times either triangle's z
     double angle[RUGA_LANES], moment[RUGA_LANES];   // theta - theta0, k s (theta - theta0)
     double bend[RUGA_LANES];                        // k/4 (theta - theta0)^2
     double q[4][3][RUGA_LANES];
@@ -119,7 +115,7 @@ static void hinge_angles(int begin, int end, int chunk, void* context) {
     for (int h = begin; h < end; h += RUGA_LANES) {
         ruga_hinge_lanes lanes;
         bends b;
-        int count = lanes_from(h, end);
+        int count = ruga_lanes_from(h, end);
         measure_hinges(p, h, count, &lanes, &b);
         memcpy(p->shell->hinge_angle + h, b.angle, (size_t)count * sizeof b.angle[0]);
     }
@@ -132,7 +128,8 @@ static void settle_directors(pass* p) {
     ruga_directors_settle(&directors, p->shell->hinge_angle, p->shell->hinge_moment);
 }
 
-// p of the hinge, see thickness.c.
+// p of the hinge: each triangle brings k/2 z n x d to a corner (thickness.c), d the edge across from it as
+// the triangle runs, which is d2 - e, -d2 and e for corners 0, 1 and 2, and e - d3, d3 and -e for 0, 1 and 3.
 RUGA_WIDE_PART void pull_of(const ruga_hinge_lanes* h, const bends* b, int i, double pull[4][3]) {
     double e[3], d2[3], d3[3], n[3], along_e[3], along_d[3];
     for (int c = 0; c < 3; c++) {
@@ -203,7 +200,7 @@ static void hinge_energies(int begin, int end, int chunk, void* context) {
     for (int h = begin; h < end; h += RUGA_LANES) {
         ruga_hinge_lanes lanes;
         bends b;
-        int count = lanes_from(h, end);
+        int count = ruga_lanes_from(h, end);
         size_t size = (size_t)count * sizeof(double);
         measure_hinges(p, h, count, &lanes, &b);
         if (shell->has_directors) {
@@ -270,8 +267,8 @@ static void triangle_energies(int begin, int end, int chunk, void* context) {
     sums sum = {{0}, {0}};
     for (int f = begin; f < end; f += RUGA_LANES) {
         ruga_triangle_lanes t;
-        double energy[RUGA_LANES], moment[3][RUGA_LANES], pull[RUGA_LANES];
-        int count = lanes_from(f, end);
+        double energy[RUGA_LANES], moment[3][RUGA_LANES], pull[RUGA_LANES] = {0};
+        int count = ruga_lanes_from(f, end);
         ruga_lanes_load(count, 3, shell->triangle[f], p->x, t.x);
         ruga_membrane_lanes_energy(shell->membrane, shell->poisson, count, shell->triangle_rest + f, &t,
                                    energy);
@@ -319,8 +316,8 @@ static void triangle_hessians(int begin, int end, int chunk, void* context) {
     const ruga_shell* shell = p->shell;
     for (int f = begin; f < end; f += RUGA_LANES) {
         ruga_triangle_lanes t;
-        double moment[3][RUGA_LANES], pull[RUGA_LANES];
-        int count = lanes_from(f, end);
+        double moment[3][RUGA_LANES], pull[RUGA_LANES] = {0};
+        int count = ruga_lanes_from(f, end);
         ruga_lanes_load(count, 3, shell->triangle[f], p->x, t.x);
         load_moments(shell, f, count, moment, pull);
         for (int i = 0; i < count; i++) {

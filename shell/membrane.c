@@ -135,7 +135,7 @@ typedef struct rest_lanes {
     double slope[2][2][RUGA_LANES], stretch[RUGA_LANES], shear[RUGA_LANES];
 } rest_lanes;
 
-RUGA_WIDE_PART void load_rest(int count, const ruga_membrane_rest* rest, rest_lanes* lanes) {
+static void load_rest(int count, const ruga_membrane_rest* rest, rest_lanes* lanes) {
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < 4; k++) {
             lanes->slope[k / 2][k % 2][i] = rest[i].slope[k / 2][k % 2];
@@ -180,17 +180,21 @@ RUGA_WIDE_PART void set_energies(ruga_membrane kind, double poisson, int count, 
     }
 }
 
-RUGA_WIDE void ruga_membrane_lanes_energy(ruga_membrane kind, double poisson, int count,
-                                          const ruga_membrane_rest* rest, ruga_triangle_lanes* t,
-                                          double* energy) {
-    rest_lanes r;
-    load_rest(count, rest, &r);
-    // A loop each, in which nothing asks for the kind.
+// A loop for each kind, in which nothing asks for it.
+RUGA_WIDE static void set_energies_of_kind(ruga_membrane kind, double poisson, int count,
+                                           const rest_lanes* rest, ruga_triangle_lanes* t, double* energy) {
     if (kind == RUGA_MEMBRANE_BARAFF_WITKIN) {
-        set_energies(RUGA_MEMBRANE_BARAFF_WITKIN, poisson, count, &r, t, energy);
+        set_energies(RUGA_MEMBRANE_BARAFF_WITKIN, poisson, count, rest, t, energy);
     } else {
-        set_energies(RUGA_MEMBRANE_STVK, poisson, count, &r, t, energy);
+        set_energies(RUGA_MEMBRANE_STVK, poisson, count, rest, t, energy);
     }
+}
+
+void ruga_membrane_lanes_energy(ruga_membrane kind, double poisson, int count, const ruga_membrane_rest* rest,
+                                ruga_triangle_lanes* triangles, double* energy) {
+    rest_lanes lanes;
+    load_rest(count, rest, &lanes);
+    set_energies_of_kind(kind, poisson, count, &lanes, triangles, energy);
 }
 
 void ruga_triangle_lanes_set(ruga_triangle_lanes* one, const double* const x[3]) {
@@ -266,16 +270,21 @@ RUGA_WIDE_PART void set_hessians(ruga_membrane kind, double poisson, int count,
     }
 }
 
-RUGA_WIDE void ruga_membrane_lanes_hessian(ruga_membrane kind, double poisson, int count,
-                                           const ruga_membrane_rest* rest, double clamp,
-                                           ruga_triangle_lanes* t) {
-    rest_lanes r;
-    load_rest(count, rest, &r);
+RUGA_WIDE static void set_hessians_of_kind(ruga_membrane kind, double poisson, int count,
+                                           const rest_lanes* rest, double clamp, ruga_triangle_lanes* t) {
     if (kind == RUGA_MEMBRANE_BARAFF_WITKIN) {
-        set_hessians(RUGA_MEMBRANE_BARAFF_WITKIN, poisson, count, &r, clamp, t);
+        set_hessians(RUGA_MEMBRANE_BARAFF_WITKIN, poisson, count, rest, clamp, t);
     } else {
-        set_hessians(RUGA_MEMBRANE_STVK, poisson, count, &r, clamp, t);
+        set_hessians(RUGA_MEMBRANE_STVK, poisson, count, rest, clamp, t);
     }
+}
+
+void ruga_membrane_lanes_hessian(ruga_membrane kind, double poisson, int count,
+                                 const ruga_membrane_rest* rest, double clamp,
+                                 ruga_triangle_lanes* triangles) {
+    rest_lanes lanes;
+    load_rest(count, rest, &lanes);
+    set_hessians_of_kind(kind, poisson, count, &lanes, clamp, triangles);
 }
 
 void ruga_triangle_lanes_blocks(int count, const ruga_triangle_lanes* t,

@@ -49,9 +49,9 @@ struct ruga_shell {
     double* hinge_moment;                              // [H] k s (theta - theta0)
     double* hinge_angle;                               // [H] theta - theta0, with directors
     double* hinge_bend;                                // [H] k/4 (theta - theta0)^2
-    double (*thickness)[2];                            // [F] s and its slope, where thickness_power is not 0
-    double (*patch_gradient)[3][RUGA_SHELL_PATCH][3];  // [F] with directors: of w t
-    double (*partial)[2];                              // [chunks] energy, sum of squared forces
+    double (*thickness)[2]; // [F] s and z of thickness.c, where thickness_power is not 0
+    double (*patch_gradient)[3][RUGA_SHELL_PATCH][3]; // [F] with directors: of w t
+    double (*partial)[2];                             // [chunks] energy, sum of squared forces
 };
 
 static inline void ruga_triangle_corners(const int triangle[3], const double* x, const double* corner[3]) {

@@ -64,8 +64,8 @@ void ruga_thickness_lanes_stiffness(int count, double power, const double* rest_
     }
 }
 
-RUGA_WIDE void ruga_thickness_lanes_add(int count, const double* restrict scale,
-                                        ruga_triangle_lanes* restrict t) {
+RUGA_WIDE static void add_gradients(int count, const double* restrict scale,
+                                    ruga_triangle_lanes* restrict t) {
     for (int i = 0; i < count; i++) {
         double u[3], v[3], c[3], along_u[3], along_v[3];
         edges(t, i, u, v);
@@ -80,6 +80,10 @@ RUGA_WIDE void ruga_thickness_lanes_add(int count, const double* restrict scale,
     }
 }
 
+void ruga_thickness_lanes_add(int count, const double* scale, ruga_triangle_lanes* triangles) {
+    add_gradients(count, scale, triangles);
+}
+
 RUGA_WIDE_PART void add_block(const double d[3], const double other_d[3], const double skew[9],
                               const double g[3], const double other_g[3], double first, double second,
                               double (*block)[RUGA_LANES], int lane) {
@@ -91,8 +95,8 @@ RUGA_WIDE_PART void add_block(const double d[3], const double other_d[3], const 
     }
 }
 
-RUGA_WIDE void ruga_thickness_lanes_add_hessian(int count, double power, const double* restrict scale,
-                                                ruga_triangle_lanes* restrict t) {
+RUGA_WIDE static void add_hessians(int count, double power, const double* restrict scale,
+                                   ruga_triangle_lanes* restrict t) {
     for (int i = 0; i < count; i++) {
         double u[3], v[3], c[3], g[2][3], d[2][3], square;
         edges(t, i, u, v);
@@ -110,4 +114,9 @@ RUGA_WIDE void ruga_thickness_lanes_add_hessian(int count, double power, const d
         add_block(d[1], d[0], skew, g[1], g[0], scale[i], second, t->block[1], i);
         add_block(d[1], d[1], none, g[1], g[1], scale[i], second, t->block[2], i);
     }
+}
+
+void ruga_thickness_lanes_add_hessian(int count, double power, const double* scale,
+                                      ruga_triangle_lanes* triangles) {
+    add_hessians(count, power, scale, triangles);
 }

@@ -237,10 +237,6 @@ typedef struct pass {
     double* out;
 } pass;
 
-static int lanes_from(int first, int end) {
-    return end - first < RUGA_LANES ? end - first : RUGA_LANES;
-}
-
 static void triangle_forces(int begin, int end, int chunk, void* context) {
     const pass* p = context;
     ruga_elastic* e = p->e;
@@ -248,7 +244,7 @@ static void triangle_forces(int begin, int end, int chunk, void* context) {
     for (int t = begin; t < end; t += RUGA_LANES) {
         ruga_triangle_lanes lanes;
         double own[RUGA_LANES];
-        int count = lanes_from(t, end);
+        int count = ruga_lanes_from(t, end);
         ruga_lanes_load(count, 3, e->triangle[t], p->x, lanes.x);
         ruga_membrane_lanes_energy(e->def.skin.membrane, e->def.skin.poisson, count, e->membrane + t, &lanes, own);
         ruga_lanes_store(count, 3, lanes.gradient, e->triangle_force[t][0]);
@@ -265,7 +261,7 @@ static void bend_forces(int begin, int end, int chunk, void* context) {
     double energy = 0;
     for (int b = begin; b < end; b += RUGA_LANES) {
         ruga_hinge_lanes lanes;
-        int count = lanes_from(b, end);
+        int count = ruga_lanes_from(b, end);
         ruga_lanes_load(count, 4, e->bend[b], p->x, lanes.x);
         ruga_hinge_lanes_measure(count, &lanes);
         ruga_lanes_store(count, 4, lanes.gradient, e->bend_gradient[b][0]);
