@@ -18,7 +18,6 @@ enum { GRADIENT, PROJECTED, DIRECTION, OLD_PROJECTED, OLD_POSITION, WORK, STEPS,
 typedef struct memory {
     int count, newest; // pairs kept, slot of the newest
     double rho[PAIRS]; // 1 / s.y
-    double gamma;      // scale of the initial inverse
     double step;       // last taken, in directions: 0 = none, or the energy could not be lowered
 } memory;
 
@@ -44,9 +43,6 @@ static ruga_status lbfgs_direction(ruga_skin* skin, const memory* m, const doubl
         add_scaled(skin->n, -a[k], y, q);
     }
     RUGA_TRY(ruga_skin_solve_rough(skin, q, d));
-    for (int i = 0; i < skin->n; i++) {
-        d[i] *= m->gamma;
-    }
     for (int age = m->count - 1; age >= 0; age--) {
         int k = slot_of(m, age);
         const double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
@@ -59,9 +55,8 @@ static ruga_status lbfgs_direction(ruga_skin* skin, const memory* m, const doubl
     return RUGA_OK;
 }
 
-// Keeps the pair of the step just made where its curvature is positive, and rescales the initial inverse by the
-// ratio of the factor's curvature to the true one along it. Differences of projected gradients are as good as those of
-// gradients, since all steps are in the null space, and need no projection before a solve.
+// Keeps the pair of the step just made where its curvature is positive. Differences of projected gradients are as good
+// as those of gradients, since all steps are in the null space, and need no projection before a solve.
 static void remember(ruga_skin* skin, memory* m, const double* x, const double* projected) {
     int k = (m->newest + 1) % PAIRS;
     double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
@@ -74,9 +69,6 @@ static void remember(ruga_skin* skin, memory* m, const double* x, const double* 
     if (!(sy > 1e-6 * m->step * fabs(ruga_dot_product(skin->n, s, old_p)))) {
         return;
     }
-    double* image = ruga_skin_vector(skin, WORK);
-    ruga_skin_multiply(skin, s, image);
-    m->gamma = fmin(fmax(ruga_dot_product(skin->n, s, image) / sy, 0.05), 1);
     m->rho[k] = 1 / sy;
     m->newest = k;
     m->count = m->count < PAIRS ? m->count + 1 : PAIRS;
@@ -97,7 +89,7 @@ static ruga_status iterate(ruga_skin* skin, memory* m, double* x, double* gradie
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result) {
     double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
-    memory m = {.gamma = 1, .newest = -1};
+    memory m = {.newest = -1};
     double score = 0, move;
     int failures = 0;
     double target = tolerance;
@@ -122,7 +114,7 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
         }
         if (score >= REFRESH) {
             RUGA_TRY(ruga_skin_factor_convex(skin, x));
-            m = (memory){.gamma = 1, .newest = -1};
+            m = (memory){.newest = -1};
             score = 0;
             continue;
         }
