@@ -22,6 +22,7 @@ typedef struct ruga_ldl_symbolic {
     size_t* row_start; // [count + 1]
     int* row;          // steps
     int* place;        // like row: where in the parent's front
+    int* run_end;      // like row: the end, from row_start, of the run of consecutive places it is in
     // Matrix entries of a front: value index and place in the front (row >= column, column a pivot).
     int* entry_start; // [count + 1]
     int* entry;       // [entries of the matrix]

@@ -57,7 +57,9 @@ static ruga_status reserve_front(assembly* a) {
     a->front.work = a->front.peak + full;
     a->front.shared = s->top[a->s];
     a->front.must_finish = s->parent[a->s] < 0;
-    memset(a->update, 0, (update + full * rows) * sizeof(real));
+    for (size_t j = 0; j < full; j++) {
+        memset(a->front.a + j * rows + j, 0, (rows - j) * sizeof(real));
+    }
     memset(a->front.peak, 0, full * sizeof(real));
     return RUGA_OK;
 }
@@ -79,29 +81,56 @@ static void assemble_matrix(assembly* a) {
     }
 }
 
-// Adds child c's update matrix: rows and columns at place[], those from `own` on into our own update.
-static void add_update(assembly* a, const int* place, int below, const real* update) {
-    int split = 0;
-    while (split < below && place[split] < a->own) {
-        split++;
+// The first of the ascending places that is not below x.
+static int find_place(const int* place, int count, int x) {
+    int begin = 0;
+    while (begin < count) {
+        int middle = begin + (count - begin) / 2;
+        begin = place[middle] < x ? middle + 1 : begin;
+        count = place[middle] < x ? count : middle;
     }
-    for (int j = 0; j < below; j++) {
-        const real* from = update + ruga_update_column(below, j);
-        if (j < split) {
-            real* to = a->front.a + (size_t)place[j] * (size_t)a->front.rows;
-            a->front.peak[place[j]] += (real)fabs(from[j]);
-            for (int i = j; i < split; i++) {
-                to[place[i]] += from[i];
-            }
-            for (int i = split; i < below; i++) {
-                to[place[i] + a->late] += from[i];
-            }
-        } else {
-            real* to = a->update + ruga_update_column(a->below, place[j] - a->own);
-            for (int i = j; i < below; i++) {
-                to[place[i] - a->own] += from[i];
-            }
+    return begin;
+}
+
+// to[place[i]] += from[i], i in [begin, end): one run of consecutive places after another.
+RUGA_WIDE static void add_runs(const int* place, const int* run_end, int begin, int end, const real* restrict from,
+                               real* restrict to) {
+    for (int i = begin; i < end;) {
+        real* run = to + (place[i] - i);
+        for (int stop = run_end[i]; i < stop; i++) {
+            run[i] += from[i];
         }
+    }
+}
+
+// Adds the columns of child c's update matrix that are pivots of ours.
+static void add_pivot_columns(assembly* a, int c) {
+    const ruga_ldl_symbolic* s = &a->ldl->symbolic;
+    const int *place = s->place + s->row_start[c], *run_end = s->run_end + s->row_start[c];
+    const real* update;
+    int late, below;
+    (void)delayed_of(a->ldl, c, &update, &late, &below);
+    int split = find_place(place, below, a->own);
+    for (int j = 0; j < split; j++) {
+        const real* from = update + ruga_update_column(below, j);
+        real* to = a->front.a + (size_t)place[j] * (size_t)a->front.rows;
+        a->front.peak[place[j]] += (real)fabs(from[j]);
+        add_runs(place, run_end, j, split, from, to);
+        add_runs(place, run_end, split, below, from, to + a->late);
+    }
+}
+
+// Adds those that fall into the columns [begin, end) of our own update matrix.
+static void add_update_columns(const assembly* a, int c, int begin, int end) {
+    const ruga_ldl_symbolic* s = &a->ldl->symbolic;
+    const int *place = s->place + s->row_start[c], *run_end = s->run_end + s->row_start[c];
+    const real* update;
+    int late, below;
+    (void)delayed_of(a->ldl, c, &update, &late, &below);
+    int first = find_place(place, below, a->own + begin);
+    for (int j = first; j < below && place[j] < a->own + end; j++) {
+        real* to = a->update + ruga_update_column(a->below, place[j] - a->own) - a->own;
+        add_runs(place, run_end, j, below, update + ruga_update_column(below, j), to);
     }
 }
 
@@ -137,30 +166,32 @@ static void assemble_children(assembly* a) {
         int late, below;
         const real* delayed = delayed_of(f, c, &update, &late, &below);
         const int* place = f->symbolic.place + f->symbolic.row_start[c];
-        add_update(a, place, below, update);
+        add_pivot_columns(a, c);
         add_delayed(a, c, column, place, late, below, delayed);
         column += late;
     }
 }
 
-typedef struct update_job {
-    const ruga_front* front;
-    real *work, *update; // work: a tile for each chunk
-} update_job;
-
-static void update_chunk(int begin, int end, int chunk, void* context) {
-    const update_job* job = context;
-    real* work = job->work + (size_t)chunk * RUGA_FRONT_TILE * (size_t)job->front->full;
-    ruga_front_update(job->front, begin, end, work, job->update);
+// Our update matrix by tiles: what our pivots leave, and the children's.
+static void update_tiles(int begin, int end, int chunk, void* context) {
+    const assembly* a = context;
+    const ruga_ldl* f = a->ldl;
+    real* work = a->front.work + (size_t)chunk * RUGA_FRONT_TILE * (size_t)a->front.full;
+    for (int t = begin; t < end; t += RUGA_FRONT_TILE) {
+        int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
+        ruga_front_update(&a->front, t, stop, work, a->update);
+        for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
+            add_update_columns(a, c, t, stop);
+        }
+    }
 }
 
 // The fronts at the top are few and large: their tiles are shared out. Below, tasks run side by side.
-static void update_below(assembly* a) {
+static void make_update(assembly* a) {
     if (a->ldl->symbolic.top[a->s]) {
-        update_job job = {&a->front, a->front.work, a->update};
-        ruga_parallel_for(a->below, RUGA_FRONT_TILE, update_chunk, &job);
+        ruga_parallel_for(a->below, RUGA_FRONT_TILE, update_tiles, a);
     } else {
-        ruga_front_update(&a->front, 0, a->below, a->front.work, a->update);
+        update_tiles(0, a->below, 0, a);
     }
 }
 
@@ -272,9 +303,7 @@ ruga_status ruga_ldl_factor_front(ruga_ldl* f, int s) {
     assemble_matrix(&a);
     assemble_children(&a);
     ruga_front_factor(&a.front);
-    if (a.below > 0 && a.front.eliminated > 0) {
-        update_below(&a);
-    }
+    make_update(&a);
     double w = a.front.eliminated, r = a.front.rows - w;
     m->entries += w * (w + 1) / 2 + w * r;
     m->flops += w * r * r + w * w * r + w * w * w / 3;

@@ -17,8 +17,12 @@
 
 #include <cblas.h>
 #include <math.h>
+#include <string.h>
 
-enum { INNER = 8, OUTER = RUGA_FRONT_BLOCK };
+#ifndef STRIP_
+#define STRIP_ 32
+#endif
+enum { INNER = 8, STRIP = STRIP_, OUTER = RUGA_FRONT_BLOCK };
 
 static const double threshold = 0.01;
 // A pivot below this share of the largest value that its diagonal ever had is what cancellation left.
@@ -220,6 +224,23 @@ static void multiply_pivots(const ruga_front* f, int begin, int end, int first, 
     }
 }
 
+// c -= l w^T, or c = -l w^T, on and below the diagonal of c [rows][columns]: there in strips, so that little
+// is computed above it. w [pivots][columns].
+static void subtract_product(int rows, int columns, int pivots, const real* l, int stride, const real* w, real keep,
+                             real* c, int c_stride) {
+    for (int j = 0; j < columns; j += STRIP) {
+        int width = columns - j < STRIP ? columns - j : STRIP;
+        RUGA_BLAS(gemm)
+        (CblasColMajor, CblasNoTrans, CblasTrans, columns - j, width, pivots, -1, l + j, stride, w + j, columns, keep,
+         c + (ptrdiff_t)j * c_stride + j, c_stride);
+    }
+    if (rows > columns) {
+        RUGA_BLAS(gemm)
+        (CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, pivots, -1, l + columns, stride, w, columns,
+         keep, c + columns, c_stride);
+    }
+}
+
 // Pivots [first, eliminated) for the columns [begin, begin + count) by tiles.
 typedef struct columns_job {
     ruga_front* front;
@@ -233,9 +254,7 @@ static void update_tile(int tile, int stop, int chunk, void* context) {
     int t = job->begin + tile, end = job->begin + stop, pivots = f->eliminated - job->first;
     real* work = f->work + (job->shared ? (size_t)chunk * RUGA_FRONT_TILE * OUTER : 0);
     multiply_pivots(f, t, end, job->first, f->eliminated, work);
-    RUGA_BLAS(gemm)
-    (CblasColMajor, CblasNoTrans, CblasTrans, f->rows - t, end - t, pivots, -1, at(f, t, job->first), f->rows,
-     work, end - t, 1, at(f, t, t), f->rows);
+    subtract_product(f->rows - t, end - t, pivots, at(f, t, job->first), f->rows, work, 1, at(f, t, t), f->rows);
     note_peaks(f, t, end);
 }
 
@@ -290,13 +309,12 @@ void ruga_front_factor(ruga_front* f) {
 }
 
 void ruga_front_update(const ruga_front* f, int begin, int end, real* work, real* update) {
-    int rows = f->rows - f->full;
-    for (int t = begin; t < end; t += RUGA_FRONT_TILE) {
-        int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
-        multiply_pivots(f, f->full + t, f->full + stop, 0, f->eliminated, work);
-        RUGA_BLAS(gemm)
-        (CblasColMajor, CblasNoTrans, CblasTrans, rows - t, stop - t, f->eliminated, -1,
-         at(f, f->full + t, 0), f->rows, work, stop - t, 1, update + ruga_update_column(rows, t) + t,
-         rows - t);
+    int rows = f->rows - f->full, stride = rows - begin;
+    real* tile = update + ruga_update_column(rows, begin) + begin;
+    if (f->eliminated == 0) {
+        memset(tile, 0, (size_t)(end - begin) * (size_t)stride * sizeof *tile);
+        return;
     }
+    multiply_pivots(f, f->full + begin, f->full + end, 0, f->eliminated, work);
+    subtract_product(stride, end - begin, f->eliminated, at(f, f->full + begin, 0), f->rows, work, 0, tile, stride);
 }

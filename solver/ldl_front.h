@@ -37,7 +37,7 @@ typedef struct ruga_front {
 // Eliminates as many of the fully summed columns as stable pivots are found for.
 void ruga_front_factor(ruga_front* front);
 
-// update -= L2 D L2^T, columns [begin, end), with `work` as in the front; begin is the first of a tile.
+// update = -L2 D L2^T on the tile of columns [begin, end), with `work` as in the front.
 void ruga_front_update(const ruga_front* front, int begin, int end, real* work, real* update);
 
 // Assembles supernode s, eliminates, hands on what is left and stores L.
