@@ -14,6 +14,7 @@
 #include "solver/ldl_front.h"
 
 #include "core/parallel.h"
+#include "core/wide.h"
 
 #include <cblas.h>
 #include <math.h>
@@ -53,31 +54,39 @@ static void exchange(ruga_front* f, int p, int q) {
     f->index[q] = index;
 }
 
+// max |x_i| over [0, count). Sizes are in the order of their bits, as integers: of these the compiler makes vectors.
+RUGA_WIDE static real largest_size(int count, const real* x) {
+    bits largest = 0;
+    for (int i = 0; i < count; i++) {
+        real size = FABS(x[i]);
+        bits b;
+        memcpy(&b, &size, sizeof b);
+        largest = b > largest ? b : largest;
+    }
+    real size;
+    memcpy(&size, &largest, sizeof size);
+    return size;
+}
+
 // The largest |a_ij|, i != j and i != skip, over rows [begin, rows), where columns [begin, j] are up to date.
-// *where: its row, the last of equals.
-static double largest_off_diagonal(const ruga_front* f, int begin, int j, int skip, int* where) {
-    double largest = -1;
+static double largest_off_diagonal(const ruga_front* f, int begin, int j, int skip) {
+    double largest = 0;
     for (int i = begin; i < j; i++) {
-        double size = fabs(*at(f, j, i));
-        if (i != skip && size >= largest) {
-            largest = size;
-            *where = i;
+        largest = i == skip ? largest : fmax(largest, fabs(*at(f, j, i)));
+    }
+    int cut = skip > j ? skip : j;
+    largest = fmax(largest, largest_size(cut - j - 1, at(f, j + 1, j)));
+    return fmax(largest, largest_size(f->rows - cut - 1, at(f, cut + 1, j)));
+}
+
+// The first row i >= begin, i != j, with this |a_ij|.
+static int find_size(const ruga_front* f, int begin, int j, double size) {
+    for (int i = begin; i < f->rows; i++) {
+        if (i != j && fabs(i < j ? *at(f, j, i) : *at(f, i, j)) == size) {
+            return i;
         }
     }
-    int cut = skip > j ? skip : f->rows;
-    const int range[2][2] = {{j + 1, cut}, {cut + 1, f->rows}};
-    for (int k = 0; k < 2; k++) {
-        int count = range[k][1] - range[k][0];
-        if (count <= 0) {
-            continue;
-        }
-        int i = range[k][0] + (int)RUGA_BLAS_IAMAX(count, at(f, range[k][0], j), 1);
-        if (fabs(*at(f, i, j)) > largest) {
-            largest = fabs(*at(f, i, j));
-            *where = i;
-        }
-    }
-    return largest < 0 ? 0 : largest;
+    return f->rows;
 }
 
 static bool pair_is_stable(const ruga_front* f, int begin, int j, int r) {
@@ -87,24 +96,21 @@ static bool pair_is_stable(const ruga_front* f, int begin, int j, int r) {
         fabs(determinant) < 0.5 * fmax(fabs(a * c), b * b) || determinant == 0) {
         return false;
     }
-    int unused;
-    double gj = largest_off_diagonal(f, begin, j, r, &unused);
-    double gr = largest_off_diagonal(f, begin, r, j, &unused);
+    double gj = largest_off_diagonal(f, begin, j, r), gr = largest_off_diagonal(f, begin, r, j);
     double limit = fabs(determinant) / threshold;
     return fabs(c) * gj + fabs(b) * gr <= limit && fabs(b) * gj + fabs(a) * gr <= limit;
 }
 
 // Size of a stable pivot on column j among the columns [begin, end), all up to date: 0 where there is none.
 static int find_pivot(const ruga_front* f, int begin, int end, int j, int* partner) {
-    double d = fabs(*at(f, j, j));
-    int r = -1;
-    double largest = largest_off_diagonal(f, begin, j, -1, &r);
+    double d = fabs(*at(f, j, j)), largest = largest_off_diagonal(f, begin, j, -1);
     if (d > round_off * f->peak[j] && d >= threshold * largest) {
         return 1;
     }
     if (largest == 0) { // nothing but round-off: a zero pivot, wherever it stands
         return 1;
     }
+    int r = find_size(f, begin, j, largest);
     if (r < end && pair_is_stable(f, begin, j, r)) {
         *partner = r;
         return 2;
@@ -116,6 +122,28 @@ static void note_peaks(ruga_front* f, int begin, int end) {
     for (int j = begin; j < end; j++) {
         real size = (real)fabs(*at(f, j, j));
         f->peak[j] = size > f->peak[j] ? size : f->peak[j];
+    }
+}
+
+// a -= l w^T, a [rows][columns].
+RUGA_WIDE static void subtract_outer(int rows, int columns, const real* restrict l, const real* w, real* a,
+                                     size_t stride) {
+    int j = 0;
+    for (; j + 4 <= columns; j += 4) {
+        real *restrict a0 = a + (size_t)j * stride, *restrict a1 = a0 + stride;
+        real *restrict a2 = a1 + stride, *restrict a3 = a2 + stride;
+        for (int i = 0; i < rows; i++) {
+            a0[i] -= l[i] * w[j];
+            a1[i] -= l[i] * w[j + 1];
+            a2[i] -= l[i] * w[j + 2];
+            a3[i] -= l[i] * w[j + 3];
+        }
+    }
+    for (; j < columns; j++) {
+        real* restrict a0 = a + (size_t)j * stride;
+        for (int i = 0; i < rows; i++) {
+            a0[i] -= l[i] * w[j];
+        }
     }
 }
 
@@ -134,7 +162,7 @@ static void eliminate_one(ruga_front* f, int end) {
     }
     RUGA_BLAS(scal)(below, 1 / d, l, 1);
     if (columns > 0) {
-        RUGA_BLAS(ger)(CblasColMajor, below, columns, -1, l, 1, f->work, 1, at(f, k + 1, k + 1), f->rows);
+        subtract_outer(below, columns, l, f->work, at(f, k + 1, k + 1), (size_t)f->rows);
     }
     note_peaks(f, k + 1, end);
 }

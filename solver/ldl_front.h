@@ -8,17 +8,21 @@
 
 #include "solver/ldl.h"
 
+#include <stdint.h>
+
 #ifdef RUGA_LDL_SINGLE
 typedef float real;
+typedef int32_t bits;
 #define RUGA_BLAS(name)       cblas_s##name
-#define RUGA_BLAS_IAMAX       cblas_isamax
+#define FABS fabsf
 #define ruga_front_factor     ruga_front_factor_single
 #define ruga_front_update     ruga_front_update_single
 #define ruga_ldl_factor_front ruga_ldl_factor_front_single
 #else
 typedef double real;
+typedef int64_t bits;
 #define RUGA_BLAS(name) cblas_d##name
-#define RUGA_BLAS_IAMAX cblas_idamax
+#define FABS fabs
 #endif
 
 // Columns [0, full) are fully summed, of which the first `eliminated` become pivots.
