@@ -64,6 +64,7 @@ static void list_children(ruga_ldl* f) {
         f->child[k] = -1;
     }
     for (int k = s->count - 1; k >= 0; k--) {
+        f->front[k].far = s->parent[k] >= 0 && !f->front[s->parent[k]].far;
         if (s->parent[k] >= 0) {
             f->sibling[k] = f->child[s->parent[k]];
             f->child[s->parent[k]] = k;
@@ -214,6 +215,15 @@ ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, si
     return RUGA_OK;
 }
 
+size_t ruga_ldl_below_children(const ruga_ldl* f, int s) {
+    const front_record* r = &f->front[s];
+    size_t base = f->memory[r->task].stack_used[!r->far];
+    for (int c = f->child[s]; c >= 0; c = f->sibling[c]) {
+        base = f->front[c].task == r->task && f->front[c].update < base ? f->front[c].update : base;
+    }
+    return base;
+}
+
 static ruga_status factor_front(ruga_ldl* f, int s) {
     return f->in_single ? ruga_ldl_factor_front_single(f, s) : ruga_ldl_factor_front(f, s);
 }
@@ -248,16 +258,13 @@ static ruga_status plan_tasks(ruga_ldl* f) {
     const ruga_ldl_symbolic* s = &f->symbolic;
     for (int k = 0; k < s->count; k++) {
         task_memory* m = &f->memory[f->front[k].task];
-        size_t own = (size_t)(s->pivot[k + 1] - s->pivot[k]), base = m->stack_used;
-        size_t below = s->row_start[k + 1] - s->row_start[k], update = ruga_update_size((int)below);
-        for (int c = f->child[k]; c >= 0; c = f->sibling[c]) {
-            if (f->front[c].task == f->front[k].task && f->front[c].update < base) {
-                base = f->front[c].update;
-            }
-        }
-        size_t peak = m->stack_used + ruga_front_size(s->top[k], own, below);
-        f->front[k].update = base;
-        m->stack_used = base + update;
+        size_t own = (size_t)(s->pivot[k + 1] - s->pivot[k]), *used = m->stack_used;
+        size_t below = s->row_start[k + 1] - s->row_start[k];
+        size_t peak = used[0] + used[1] + ruga_front_size(s->top[k], own, below);
+        bool far = f->front[k].far;
+        used[!far] = ruga_ldl_below_children(f, k);
+        f->front[k].update = used[far];
+        used[far] += ruga_update_size((int)below);
         m->factor_used += ruga_ldl_stored_size((int)(own + below), (int)own);
         m->index_used += own + below;
         m->stack_peak = peak > m->stack_peak ? peak : m->stack_peak;
@@ -275,7 +282,7 @@ static ruga_status plan_tasks(ruga_ldl* f) {
 static void start_tasks(ruga_ldl* f) {
     for (int t = 0; t <= f->symbolic.task_count; t++) {
         task_memory* m = &f->memory[t];
-        m->factor_used = m->index_used = m->stack_used = 0;
+        m->factor_used = m->index_used = m->stack_used[0] = m->stack_used[1] = 0;
         m->positive = m->negative = m->zero = 0;
         m->entries = m->flops = 0;
         m->status = RUGA_OK;

@@ -91,18 +91,21 @@ typedef struct task_memory {
     size_t factor_used, factor_capacity;
     int* index; // per front: steps of its rows, pivots first
     size_t index_used, index_capacity;
-    // double or float, as the work is done, per front: update of `below` rows, delayed [late][late + below],
-    // peak [late]; above them the front that is made.
+    // Two stacks in one, from its two ends, fronts of odd depth on the far one: what a front hands on is made in
+    // its place while its children's are on top of the other stack. double or float, as the work is done, per
+    // front: update of `below` rows, then (on the far stack before) delayed [late][late + below], peak [late].
+    // Between the stacks the front that is made.
     void* stack;
-    size_t stack_used, stack_peak, stack_capacity; // capacity in bytes
+    size_t stack_used[2], stack_peak, stack_capacity; // capacity in bytes
     int positive, negative, zero;
     double entries, flops;
     ruga_status status;
 } task_memory;
 
 typedef struct front_record {
-    size_t factor, index, update; // offsets in its task's memory
+    size_t factor, index, update; // offsets in its task's memory; `update` from its end of the stack
     int task, rows, full, eliminated;
+    bool far;
 } front_record;
 
 typedef struct ruga_ldl {
@@ -131,6 +134,8 @@ typedef struct ruga_ldl {
 ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start, const bool* last,
                             bool single, ruga_ldl** ldl);
 void ruga_ldl_destroy(ruga_ldl** ldl);
+// What stays of the stack that has the children of s when these are taken off.
+size_t ruga_ldl_below_children(const ruga_ldl* ldl, int s);
 // Room for `count` elements of `size` bytes; what grows, grows by 3 % at least.
 ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, size_t size);
 // `in_single`: the work is done in single precision, where L is stored so.

@@ -18,39 +18,54 @@ typedef struct assembly {
     task_memory* memory;
     int s, own, late, below; // pivots of its own, delayed ones of children, rows that stay
     ruga_front front;
-    size_t base; // of the stack, under the children's updates
     real* update;
 } assembly;
 
+static real* end_of_stack(const task_memory* m) {
+    return (real*)m->stack + m->stack_capacity / sizeof(real);
+}
+
 static const real* delayed_of(const ruga_ldl* f, int c, const real** update, int* late, int* below) {
     const front_record* r = &f->front[c];
-    *update = (const real*)f->memory[r->task].stack + r->update;
+    const task_memory* m = &f->memory[r->task];
     *below = r->rows - r->full;
     *late = r->full - r->eliminated;
-    return *update + ruga_update_size(*below);
+    size_t size = ruga_update_size(*below), delayed = (size_t)*late * (size_t)(*late + *below + 1);
+    if (r->far) {
+        *update = end_of_stack(m) - r->update - size;
+        return *update - delayed;
+    }
+    *update = (const real*)m->stack + r->update;
+    return *update + size;
+}
+
+// Room for `count` reals; what the far stack has moves along with the end.
+static ruga_status reserve_stack(task_memory* m, size_t count) {
+    size_t before = m->stack_capacity / sizeof(real), far = m->stack_used[1];
+    RUGA_TRY(ruga_ldl_make_room(&m->stack, &m->stack_capacity, count * sizeof(real), 1));
+    if (m->stack_capacity / sizeof(real) > before) {
+        memmove(end_of_stack(m) - far, (real*)m->stack + before - far, far * sizeof(real));
+    }
+    return RUGA_OK;
 }
 
 static ruga_status reserve_front(assembly* a) {
     ruga_ldl* f = a->ldl;
     const ruga_ldl_symbolic* s = &f->symbolic;
     task_memory* m = a->memory;
-    a->base = m->stack_used;
     for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
         a->late += f->front[c].full - f->front[c].eliminated;
-        if (f->front[c].task == f->front[a->s].task && f->front[c].update < a->base) {
-            a->base = f->front[c].update;
-        }
     }
     a->own = s->pivot[a->s + 1] - s->pivot[a->s];
     a->below = (int)(s->row_start[a->s + 1] - s->row_start[a->s]);
-    size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below;
-    size_t update = ruga_update_size(a->below);
-    size_t used = m->stack_used + ruga_front_size(s->top[a->s], full, (size_t)a->below);
+    size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below, *used = m->stack_used;
+    size_t update = ruga_update_size(a->below), size = ruga_front_size(s->top[a->s], full, (size_t)a->below);
+    bool far = f->front[a->s].far;
     RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used + rows, sizeof(int)));
-    RUGA_TRY(ruga_ldl_make_room(&m->stack, &m->stack_capacity, used * sizeof(real), 1));
-    a->update = (real*)m->stack + m->stack_used;
+    RUGA_TRY(reserve_stack(m, used[0] + used[1] + size));
+    a->update = far ? end_of_stack(m) - used[1] - update : (real*)m->stack + used[0];
     a->front = (ruga_front){.rows = (int)rows, .full = (int)full};
-    a->front.a = a->update + update;
+    a->front.a = (real*)m->stack + used[0] + (far ? 0 : update);
     a->front.index = m->index + m->index_used;
     a->front.pivot = a->front.a + full * rows;
     a->front.peak = a->front.pivot + 2 * full;
@@ -251,32 +266,46 @@ static ruga_status store_factor(assembly* a) {
     return RUGA_OK;
 }
 
-// Keeps L, and hands on the update matrix and the delayed columns, on the stack in the children's place.
+// The delayed columns and their peaks go beside the update matrix: down into the front that they stand in, or up
+// behind it, one by one.
+static void keep_delayed(assembly* a, bool far) {
+    const ruga_front* f = &a->front;
+    size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, rows = (size_t)f->rows, height = rows - done;
+    real* delayed = far ? a->update - late * (height + 1) : a->update + ruga_update_size(a->below);
+    real* peak = delayed + late * height;
+    if (far) {
+        memmove(peak, f->peak + done, late * sizeof(real));
+    }
+    for (size_t k = 0; k < late; k++) {
+        size_t q = far ? late - 1 - k : k;
+        memmove(delayed + q * height, f->a + (done + q) * rows + done, height * sizeof(real));
+    }
+    if (!far) {
+        memmove(peak, f->peak + done, late * sizeof(real));
+    }
+}
+
+// Keeps L, and hands on the update matrix and the delayed columns; the children's are gone.
 static ruga_status store_front(assembly* a) {
     ruga_ldl* ldl = a->ldl;
     task_memory* m = a->memory;
     const ruga_front* f = &a->front;
-    size_t update = ruga_update_size(a->below), rows = (size_t)f->rows;
-    size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, height = rows - done;
-    size_t begin = m->factor_used;
+    size_t rows = (size_t)f->rows, late = (size_t)(f->full - f->eliminated), begin = m->factor_used;
     RUGA_TRY(store_factor(a));
-    real* base = (real*)m->stack + a->base;
-    memmove(base, a->update, update * sizeof(real));
-    real* delayed = base + update; // below the front, whose columns move down one by one
-    for (size_t q = 0; q < late; q++) {
-        memmove(delayed + q * height, f->a + (done + q) * rows + done, height * sizeof(real));
-    }
-    memmove(delayed + late * height, f->peak + done, late * sizeof(real));
     front_record* record = &ldl->front[a->s];
+    bool far = record->far;
+    keep_delayed(a, far);
+    m->stack_used[!far] = ruga_ldl_below_children(ldl, a->s);
     *record = (front_record){.factor = begin,
                              .index = m->index_used,
-                             .update = a->base,
+                             .update = m->stack_used[far],
                              .task = record->task,
                              .rows = f->rows,
                              .full = f->full,
-                             .eliminated = f->eliminated};
+                             .eliminated = f->eliminated,
+                             .far = far};
     m->index_used += rows;
-    m->stack_used = a->base + update + late * (height + 1);
+    m->stack_used[far] += ruga_update_size(a->below) + late * (late + (size_t)a->below + 1);
     return RUGA_OK;
 }
 
