@@ -8,6 +8,7 @@
 
 #include "solver/linear.h"
 
+#include <stdatomic.h>
 #include <stddef.h>
 
 // Unknowns are numbered by their step of elimination. Supernode s eliminates steps [pivot[s], pivot[s + 1]),
@@ -85,18 +86,25 @@ static inline size_t ruga_ldl_stored_size(int rows, int eliminated) {
     return ruga_ldl_tile(ruga_ldl_tiles(rows), strips, strips) + 2 * (size_t)eliminated;
 }
 
+// Where fronts are made, one for each thread at work: two stacks, from its two ends, fronts of odd depth on the far
+// one, so that what a front hands on is made in its place while its children's are on top of the other. Per front,
+// in double or float as the work is done: update of `below` rows, then (on the far stack before it) delayed
+// [late][late + below], peak [late]. Between the stacks the front that is made. Capacities are in bytes.
+typedef struct front_stack {
+    void* memory;
+    size_t capacity;
+    atomic_flag taken;
+} front_stack;
+
 // Storage of a task. Places in it are kept as offsets, since it moves when delayed pivots make it grow.
 typedef struct task_memory {
     void* factor; // double or float, per front: ruga_ldl_stored_size
     size_t factor_used, factor_capacity;
     int* index; // per front: steps of its rows, pivots first
     size_t index_used, index_capacity;
-    // Two stacks in one, from its two ends, fronts of odd depth on the far one: what a front hands on is made in
-    // its place while its children's are on top of the other stack. double or float, as the work is done, per
-    // front: update of `below` rows, then (on the far stack before) delayed [late][late + below], peak [late].
-    // Between the stacks the front that is made.
-    void* stack;
-    size_t stack_used[2], stack_peak, stack_capacity; // capacity in bytes
+    void* upward; // what its fronts hand on to those at the top, as on a front_stack
+    size_t upward_used, upward_capacity;
+    size_t stack_used[2], stack_peak; // of the front_stack that it works on, near and far
     int positive, negative, zero;
     double entries, flops;
     ruga_status status;
@@ -105,8 +113,12 @@ typedef struct task_memory {
 typedef struct front_record {
     size_t factor, index, update; // offsets in its task's memory; `update` from its end of the stack
     int task, rows, full, eliminated;
-    bool far;
+    bool far, upward; // handed on by the far stack; by `upward`
 } front_record;
+
+static inline size_t* ruga_ldl_used(task_memory* m, const front_record* r) {
+    return r->upward ? &m->upward_used : &m->stack_used[r->far];
+}
 
 typedef struct ruga_ldl {
     ruga_ldl_symbolic symbolic;
@@ -117,7 +129,9 @@ typedef struct ruga_ldl {
     int* sibling;        // [count]
     front_record* front; // [count]
     task_memory* memory; // [task_count + 1], the last one for the top
-    bool single;         // L is stored in single precision
+    front_stack* stack;  // [stack_count]
+    int stack_count, stack_capacity;
+    bool single; // L is stored in single precision
     bool planned, in_single, ready;
     int widest;             // rows of the largest front, in whole tiles
     double *load, *answer;  // [n] scaled, by unknown; by step

@@ -18,35 +18,40 @@ typedef struct assembly {
     task_memory* memory;
     int s, own, late, below; // pivots of its own, delayed ones of children, rows that stay
     ruga_front front;
+    front_stack* stack;
     real* update;
 } assembly;
 
-static real* end_of_stack(const task_memory* m) {
-    return (real*)m->stack + m->stack_capacity / sizeof(real);
+static real* end_of_stack(const front_stack* stack) {
+    return (real*)stack->memory + stack->capacity / sizeof(real);
 }
 
-static const real* delayed_of(const ruga_ldl* f, int c, const real** update, int* late, int* below) {
-    const front_record* r = &f->front[c];
-    const task_memory* m = &f->memory[r->task];
+static const real* delayed_of(const assembly* a, int c, const real** update, int* late, int* below) {
+    const front_record* r = &a->ldl->front[c];
     *below = r->rows - r->full;
     *late = r->full - r->eliminated;
     size_t size = ruga_update_size(*below), delayed = (size_t)*late * (size_t)(*late + *below + 1);
-    if (r->far) {
-        *update = end_of_stack(m) - r->update - size;
+    if (r->far && !r->upward) {
+        *update = end_of_stack(a->stack) - r->update - size;
         return *update - delayed;
     }
-    *update = (const real*)m->stack + r->update;
+    const void* memory = r->upward ? a->ldl->memory[r->task].upward : a->stack->memory;
+    *update = (const real*)memory + r->update;
     return *update + size;
 }
 
 // Room for `count` reals; what the far stack has moves along with the end.
-static ruga_status reserve_stack(task_memory* m, size_t count) {
-    size_t before = m->stack_capacity / sizeof(real), far = m->stack_used[1];
-    RUGA_TRY(ruga_ldl_make_room(&m->stack, &m->stack_capacity, count * sizeof(real), 1));
-    if (m->stack_capacity / sizeof(real) > before) {
-        memmove(end_of_stack(m) - far, (real*)m->stack + before - far, far * sizeof(real));
+static ruga_status reserve_stack(front_stack* stack, size_t far, size_t count) {
+    size_t before = stack->capacity / sizeof(real);
+    RUGA_TRY(ruga_ldl_make_room(&stack->memory, &stack->capacity, count * sizeof(real), 1));
+    if (stack->capacity / sizeof(real) > before) {
+        memmove(end_of_stack(stack) - far, (real*)stack->memory + before - far, far * sizeof(real));
     }
     return RUGA_OK;
+}
+
+static ruga_status reserve_upward(task_memory* m, size_t count) {
+    return ruga_ldl_make_room(&m->upward, &m->upward_capacity, (m->upward_used + count) * sizeof(real), 1);
 }
 
 static ruga_status reserve_front(assembly* a) {
@@ -60,12 +65,19 @@ static ruga_status reserve_front(assembly* a) {
     a->below = (int)(s->row_start[a->s + 1] - s->row_start[a->s]);
     size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below, *used = m->stack_used;
     size_t update = ruga_update_size(a->below), size = ruga_front_size(s->top[a->s], full, (size_t)a->below);
-    bool far = f->front[a->s].far;
+    bool far = f->front[a->s].far, upward = f->front[a->s].upward;
     RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used + rows, sizeof(int)));
-    RUGA_TRY(reserve_stack(m, used[0] + used[1] + size));
-    a->update = far ? end_of_stack(m) - used[1] - update : (real*)m->stack + used[0];
-    a->front = (ruga_front){.rows = (int)rows, .full = (int)full};
-    a->front.a = (real*)m->stack + used[0] + (far ? 0 : update);
+    RUGA_TRY(reserve_stack(a->stack, used[1], used[0] + used[1] + size - (upward ? update : 0)));
+    a->front = (ruga_front){.rows = (int)rows, .full = (int)full, .a = (real*)a->stack->memory + used[0]};
+    if (upward) {
+        RUGA_TRY(reserve_upward(m, update));
+        a->update = (real*)m->upward + m->upward_used;
+    } else if (far) {
+        a->update = end_of_stack(a->stack) - used[1] - update;
+    } else {
+        a->update = a->front.a;
+        a->front.a += update;
+    }
     a->front.index = m->index + m->index_used;
     a->front.pivot = a->front.a + full * rows;
     a->front.peak = a->front.pivot + 2 * full;
@@ -124,7 +136,7 @@ static void add_pivot_columns(assembly* a, int c) {
     const int *place = s->place + s->row_start[c], *run_end = s->run_end + s->row_start[c];
     const real* update;
     int late, below;
-    (void)delayed_of(a->ldl, c, &update, &late, &below);
+    (void)delayed_of(a, c, &update, &late, &below);
     int split = find_place(place, below, a->own);
     for (int j = 0; j < split; j++) {
         const real* from = update + ruga_update_column(below, j);
@@ -141,7 +153,7 @@ static void add_update_columns(const assembly* a, int c, int begin, int end) {
     const int *place = s->place + s->row_start[c], *run_end = s->run_end + s->row_start[c];
     const real* update;
     int late, below;
-    (void)delayed_of(a->ldl, c, &update, &late, &below);
+    (void)delayed_of(a, c, &update, &late, &below);
     int first = find_place(place, below, a->own + begin);
     for (int j = first; j < below && place[j] < a->own + end; j++) {
         real* to = a->update + ruga_update_column(a->below, place[j] - a->own) - a->own;
@@ -179,7 +191,7 @@ static void assemble_children(assembly* a) {
     for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
         const real* update;
         int late, below;
-        const real* delayed = delayed_of(f, c, &update, &late, &below);
+        const real* delayed = delayed_of(a, c, &update, &late, &below);
         const int* place = f->symbolic.place + f->symbolic.row_start[c];
         add_pivot_columns(a, c);
         add_delayed(a, c, column, place, late, below, delayed);
@@ -268,10 +280,16 @@ static ruga_status store_factor(assembly* a) {
 
 // The delayed columns and their peaks go beside the update matrix: down into the front that they stand in, or up
 // behind it, one by one.
-static void keep_delayed(assembly* a, bool far) {
+static ruga_status keep_delayed(assembly* a, const front_record* record) {
     const ruga_front* f = &a->front;
     size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, rows = (size_t)f->rows, height = rows - done;
-    real* delayed = far ? a->update - late * (height + 1) : a->update + ruga_update_size(a->below);
+    size_t update = ruga_update_size(a->below);
+    bool far = record->far && !record->upward;
+    if (record->upward) {
+        RUGA_TRY(reserve_upward(a->memory, update + late * (height + 1)));
+        a->update = (real*)a->memory->upward + a->memory->upward_used;
+    }
+    real* delayed = far ? a->update - late * (height + 1) : a->update + update;
     real* peak = delayed + late * height;
     if (far) {
         memmove(peak, f->peak + done, late * sizeof(real));
@@ -283,6 +301,7 @@ static void keep_delayed(assembly* a, bool far) {
     if (!far) {
         memmove(peak, f->peak + done, late * sizeof(real));
     }
+    return RUGA_OK;
 }
 
 // Keeps L, and hands on the update matrix and the delayed columns; the children's are gone.
@@ -293,19 +312,17 @@ static ruga_status store_front(assembly* a) {
     size_t rows = (size_t)f->rows, late = (size_t)(f->full - f->eliminated), begin = m->factor_used;
     RUGA_TRY(store_factor(a));
     front_record* record = &ldl->front[a->s];
-    bool far = record->far;
-    keep_delayed(a, far);
-    m->stack_used[!far] = ruga_ldl_below_children(ldl, a->s);
-    *record = (front_record){.factor = begin,
-                             .index = m->index_used,
-                             .update = m->stack_used[far],
-                             .task = record->task,
-                             .rows = f->rows,
-                             .full = f->full,
-                             .eliminated = f->eliminated,
-                             .far = far};
+    RUGA_TRY(keep_delayed(a, record));
+    size_t* handed = ruga_ldl_used(m, record);
+    m->stack_used[!record->far] = ruga_ldl_below_children(ldl, a->s);
+    record->factor = begin;
+    record->index = m->index_used;
+    record->update = *handed;
+    record->rows = f->rows;
+    record->full = f->full;
+    record->eliminated = f->eliminated;
     m->index_used += rows;
-    m->stack_used[far] += ruga_update_size(a->below) + late * (late + (size_t)a->below + 1);
+    *handed += ruga_update_size(a->below) + late * (late + (size_t)a->below + 1);
     return RUGA_OK;
 }
 
@@ -325,8 +342,8 @@ static void invert_pivots(ruga_front* f) {
     }
 }
 
-ruga_status ruga_ldl_factor_front(ruga_ldl* f, int s) {
-    assembly a = {.ldl = f, .memory = &f->memory[f->front[s].task], .s = s};
+ruga_status ruga_ldl_factor_front(ruga_ldl* f, int s, front_stack* stack) {
+    assembly a = {.ldl = f, .memory = &f->memory[f->front[s].task], .s = s, .stack = stack};
     task_memory* m = a.memory;
     RUGA_TRY(reserve_front(&a));
     assemble_matrix(&a);

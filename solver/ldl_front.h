@@ -45,9 +45,9 @@ void ruga_front_factor(ruga_front* front);
 void ruga_front_update(const ruga_front* front, int begin, int end, real* work, real* update);
 
 // Assembles supernode s, eliminates, hands on what is left and stores L.
-ruga_status ruga_ldl_factor_front(ruga_ldl* ldl, int s);
+ruga_status ruga_ldl_factor_front(ruga_ldl* ldl, int s, front_stack* stack);
 #ifndef RUGA_LDL_SINGLE
-ruga_status ruga_ldl_factor_front_single(ruga_ldl* ldl, int s);
+ruga_status ruga_ldl_factor_front_single(ruga_ldl* ldl, int s, front_stack* stack);
 #endif
 
 #endif
