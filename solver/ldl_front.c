@@ -229,7 +229,8 @@ static void eliminate_columns(ruga_front* f, int end) {
 }
 
 // w = (L D)^T of rows [begin, end) and pivots [first, last): column p of w is w[p * (end - begin)].
-static void multiply_pivots(const ruga_front* f, int begin, int end, int first, int last, real* w) {
+RUGA_WIDE static void multiply_pivots(const ruga_front* f, int begin, int end, int first, int last,
+                                      real* restrict w) {
     int count = end - begin;
     for (int p = first; p < last; p++) {
         real d = f->pivot[2 * p], e = f->pivot[2 * p + 1];
