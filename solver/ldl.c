@@ -6,9 +6,9 @@
 // D (Sylvester). Fronts are assembled from the matrix and the update matrices of their children, factored
 // (ldl_front.c), and hand on what is left: the update matrix and the columns without a stable pivot.
 //
-// Independent subtrees are tasks with memory of their own: an index list and panels of L, which only grow,
-// and a stack of update matrices. Which task a front belongs to depends on the matrix alone, and so do all
-// sums: the bits are the same for any number of threads.
+// Independent subtrees are tasks with memory of their own: an index list, panels of L, which only grow, and
+// what they hand up. Stacks of update matrices belong to threads. Which task a front belongs to depends on
+// the matrix alone, and so do all sums: the bits are the same for any number of threads.
 #include "solver/ldl_front.h"
 
 #include "core/memory.h"

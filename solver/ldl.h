@@ -86,10 +86,11 @@ static inline size_t ruga_ldl_stored_size(int rows, int eliminated) {
     return ruga_ldl_tile(ruga_ldl_tiles(rows), strips, strips) + 2 * (size_t)eliminated;
 }
 
-// Where fronts are made, one for each thread at work: two stacks, from its two ends, fronts of odd depth on the far
-// one, so that what a front hands on is made in its place while its children's are on top of the other. Per front,
-// in double or float as the work is done: update of `below` rows, then (on the far stack before it) delayed
-// [late][late + below], peak [late]. Between the stacks the front that is made. Capacities are in bytes.
+// Where fronts are made, one for each thread at work: two stacks, from its two ends, fronts of odd depth on
+// the far one, so that what a front hands on is made in its place while its children's are on top of the
+// other. Per front, in double or float as the work is done: update of `below` rows, then (on the far stack
+// before it) delayed [late][late + below], peak [late]. Between the stacks the front that is made. Capacities
+// are in bytes.
 typedef struct front_stack {
     void* memory;
     size_t capacity;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// One front of the multifrontal factorisation (ldl.h), in either precision (ldl_front.h): assembled on the
-// stack from the matrix and the update matrices of its children, factored, and taken apart. Its columns of L
+// One front of the multifrontal factorisation (ldl.h), in either precision (ldl_front.h): its fully summed
+// columns are assembled on the stack from the matrix and the update matrices of its children, and factored;
+// its update matrix is made tile by tile, of what its pivots leave and of the children's. Its columns of L
 // are stored, in single precision where the factor is kept so; the update matrix and the columns without a
 // stable pivot stay on the stack.
 #include "solver/ldl_front.h"
@@ -120,8 +121,8 @@ static int find_place(const int* place, int count, int x) {
 }
 
 // to[place[i]] += from[i], i in [begin, end): one run of consecutive places after another.
-RUGA_WIDE static void add_runs(const int* place, const int* run_end, int begin, int end, const real* restrict from,
-                               real* restrict to) {
+RUGA_WIDE static void add_runs(const int* place, const int* run_end, int begin, int end,
+                               const real* restrict from, real* restrict to) {
     for (int i = begin; i < end;) {
         real* run = to + (place[i] - i);
         for (int stop = run_end[i]; i < stop; i++) {
@@ -278,11 +279,12 @@ static ruga_status store_factor(assembly* a) {
     return RUGA_OK;
 }
 
-// The delayed columns and their peaks go beside the update matrix: down into the front that they stand in, or up
-// behind it, one by one.
+// The delayed columns and their peaks go beside the update matrix: down into the front that they stand in, or
+// up behind it, one by one.
 static ruga_status keep_delayed(assembly* a, const front_record* record) {
     const ruga_front* f = &a->front;
-    size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, rows = (size_t)f->rows, height = rows - done;
+    size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, rows = (size_t)f->rows,
+           height = rows - done;
     size_t update = ruga_update_size(a->below);
     bool far = record->far && !record->upward;
     if (record->upward) {

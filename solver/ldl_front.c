@@ -20,10 +20,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifndef STRIP_
-#define STRIP_ 32
-#endif
-enum { INNER = 8, STRIP = STRIP_, OUTER = RUGA_FRONT_BLOCK };
+enum { INNER = 8, STRIP = 32, OUTER = RUGA_FRONT_BLOCK };
 
 static const double threshold = 0.01;
 // A pivot below this share of the largest value that its diagonal ever had is what cancellation left.
@@ -54,11 +51,12 @@ static void exchange(ruga_front* f, int p, int q) {
     f->index[q] = index;
 }
 
-// max |x_i| over [0, count). Sizes are in the order of their bits, as integers: of these the compiler makes vectors.
+// max |x_i| over [0, count). Sizes are in the order of their bits, as integers: of these the compiler makes
+// vectors.
 RUGA_WIDE static real largest_size(int count, const real* x) {
     bits largest = 0;
     for (int i = 0; i < count; i++) {
-        real size = FABS(x[i]);
+        real size = (real)fabs(x[i]);
         bits b;
         memcpy(&b, &size, sizeof b);
         largest = b > largest ? b : largest;
@@ -128,21 +126,10 @@ static void note_peaks(ruga_front* f, int begin, int end) {
 // a -= l w^T, a [rows][columns].
 RUGA_WIDE static void subtract_outer(int rows, int columns, const real* restrict l, const real* w, real* a,
                                      size_t stride) {
-    int j = 0;
-    for (; j + 4 <= columns; j += 4) {
-        real *restrict a0 = a + (size_t)j * stride, *restrict a1 = a0 + stride;
-        real *restrict a2 = a1 + stride, *restrict a3 = a2 + stride;
-        for (int i = 0; i < rows; i++) {
-            a0[i] -= l[i] * w[j];
-            a1[i] -= l[i] * w[j + 1];
-            a2[i] -= l[i] * w[j + 2];
-            a3[i] -= l[i] * w[j + 3];
-        }
-    }
-    for (; j < columns; j++) {
-        real* restrict a0 = a + (size_t)j * stride;
-        for (int i = 0; i < rows; i++) {
-            a0[i] -= l[i] * w[j];
+    for (int j = 0; j < columns; j++) {
+        real* restrict column = a + (size_t)j * stride;
+        for (int i = j; i < rows; i++) {
+            column[i] -= l[i] * w[j];
         }
     }
 }
@@ -255,18 +242,18 @@ RUGA_WIDE static void multiply_pivots(const ruga_front* f, int begin, int end, i
 
 // c -= l w^T, or c = -l w^T, on and below the diagonal of c [rows][columns]: there in strips, so that little
 // is computed above it. w [pivots][columns].
-static void subtract_product(int rows, int columns, int pivots, const real* l, int stride, const real* w, real keep,
-                             real* c, int c_stride) {
+static void subtract_product(int rows, int columns, int pivots, const real* l, int stride, const real* w,
+                             real keep, real* c, int c_stride) {
     for (int j = 0; j < columns; j += STRIP) {
         int width = columns - j < STRIP ? columns - j : STRIP;
         RUGA_BLAS(gemm)
-        (CblasColMajor, CblasNoTrans, CblasTrans, columns - j, width, pivots, -1, l + j, stride, w + j, columns, keep,
-         c + (ptrdiff_t)j * c_stride + j, c_stride);
+        (CblasColMajor, CblasNoTrans, CblasTrans, columns - j, width, pivots, -1, l + j, stride, w + j,
+         columns, keep, c + (ptrdiff_t)j * c_stride + j, c_stride);
     }
     if (rows > columns) {
         RUGA_BLAS(gemm)
-        (CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, pivots, -1, l + columns, stride, w, columns,
-         keep, c + columns, c_stride);
+        (CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, pivots, -1, l + columns, stride, w,
+         columns, keep, c + columns, c_stride);
     }
 }
 
@@ -283,7 +270,8 @@ static void update_tile(int tile, int stop, int chunk, void* context) {
     int t = job->begin + tile, end = job->begin + stop, pivots = f->eliminated - job->first;
     real* work = f->work + (job->shared ? (size_t)chunk * RUGA_FRONT_TILE * OUTER : 0);
     multiply_pivots(f, t, end, job->first, f->eliminated, work);
-    subtract_product(f->rows - t, end - t, pivots, at(f, t, job->first), f->rows, work, 1, at(f, t, t), f->rows);
+    subtract_product(f->rows - t, end - t, pivots, at(f, t, job->first), f->rows, work, 1, at(f, t, t),
+                     f->rows);
     note_peaks(f, t, end);
 }
 
@@ -345,5 +333,6 @@ void ruga_front_update(const ruga_front* f, int begin, int end, real* work, real
         return;
     }
     multiply_pivots(f, f->full + begin, f->full + end, 0, f->eliminated, work);
-    subtract_product(stride, end - begin, f->eliminated, at(f, f->full + begin, 0), f->rows, work, 0, tile, stride);
+    subtract_product(stride, end - begin, f->eliminated, at(f, f->full + begin, 0), f->rows, work, 0, tile,
+                     stride);
 }

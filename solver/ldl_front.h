@@ -14,7 +14,6 @@
 typedef float real;
 typedef int32_t bits;
 #define RUGA_BLAS(name)       cblas_s##name
-#define FABS fabsf
 #define ruga_front_factor     ruga_front_factor_single
 #define ruga_front_update     ruga_front_update_single
 #define ruga_ldl_factor_front ruga_ldl_factor_front_single
@@ -22,7 +21,6 @@ typedef int32_t bits;
 typedef double real;
 typedef int64_t bits;
 #define RUGA_BLAS(name) cblas_d##name
-#define FABS fabs
 #endif
 
 // Columns [0, full) are fully summed, of which the first `eliminated` become pivots.
