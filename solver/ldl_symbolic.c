@@ -3,7 +3,7 @@
 //
 // Analysis for the multifrontal factorisation (Duff, Reid 1983; Liu 1992): elimination tree, supernodes,
 // amalgamation of small supernodes with their parents, rows of each front, and where everything goes.
-#include "solver/ldl.h"
+#include "solver/ldl_symbolic.h"
 
 #include "core/memory.h"
 #include "solver/ordering.h"
