@@ -5,13 +5,14 @@
 // every 24 iterations from a Hessian with half of the compressive geometric stiffness taken out (the exact one is
 // indefinite while wrinkles move); the last certified exact factor starts the next frame. A KKT solve returns steps
 // with H d = 0, so every iterate stays feasible. facts: a wrinkled valley is curved on the scale of the thickness,
-// so any quadratic model serves for about 0.2 h only; cheap steps with a fresh enough factor win over Newton's.
+// so any quadratic model serves for about 0.2 h only; cheap steps with a fresh enough factor win over Newton's. What
+// takes 240 of them is no wrinkle but a stiff panel that turns: where the Hessian is convex Newton's leaps go on.
 #include "solver/skin.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { PAIRS = 8, REFRESH = 24, MAX_ITERATIONS = 3000 };
+enum { PAIRS = 8, REFRESH = 24, SLOW = 240, MAX_ITERATIONS = 3000 };
 enum { GRADIENT, PROJECTED, DIRECTION, OLD_GRADIENT, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
 
 typedef struct memory {
@@ -99,7 +100,7 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
     double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
     memory m = {.gamma = 1, .newest = -1};
     double score = 0, step, move;
-    int failures = 0;
+    int failures = 0, hand_over = SLOW;
     double target = tolerance;
     result->outcome = RUGA_OUTCOME_NOT_CONVERGED;
     RUGA_TRY(ruga_skin_energy(skin, x, &result->terms, gradient));
@@ -116,6 +117,14 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
                 return RUGA_OK;
             }
             score = REFRESH;
+        }
+        if (score >= REFRESH && k >= hand_over) {
+            RUGA_TRY(ruga_newton_minimize(skin, x, tolerance, certify, true, result));
+            if (result->outcome != RUGA_OUTCOME_NOT_CONVERGED) {
+                return RUGA_OK;
+            }
+            RUGA_TRY(ruga_skin_energy(skin, x, &result->terms, gradient));
+            hand_over = k + SLOW;
         }
         if (score >= REFRESH) {
             RUGA_TRY(ruga_skin_factor_convex(skin, x));

@@ -113,7 +113,8 @@ typedef struct ruga_skin_result {
 // inertia at zero shift; without it a small residual is reported as minimum.
 ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                ruga_skin_result* result);
-ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
+// while_convex: ends, not converged, where the exact Hessian is not that of a minimum.
+ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify, bool while_convex,
                                  ruga_skin_result* result);
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result);
