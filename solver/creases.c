@@ -283,9 +283,8 @@ done:
 }
 
 // k = l / (A1 / D1 + A2 / D2) for each length, A the material on both sides: as in a mesh that conforms. A
-// fold is no stiffer than a thousand times what a panel can answer it with at the most, E h over one edge
-// (its bending is far softer): beyond that nothing moves by more than 1e-5 rad, and what panels do drowns in
-// its round-off.
+// fold is no stiffer than 1,000 times E h times an edge: no panel that is strained by less than 1 % can turn
+// that by 1e-5 rad, and beyond it the panels' own forces drown in the hinge's round-off.
 void ruga_creases_set_bending(ruga_creases* c, const ruga_shell_material* material) {
     const double edge = ruga_mesh_mean_edge(&c->raster.mesh);
     for (int h = 0; h < c->hinge_count; h++) {
