@@ -32,9 +32,9 @@ static const double BLIND = 1e-10;      // of the energies' size
 static const double FIRST_SHIFT = 1e-9; // of the largest diagonal entry
 static const double CAP = 0.5;          // mean edges
 static const double FORCE_FLOOR = 1e-8; // of E h times the mean edge
-static const double EASING = 1.3;       // by which steps of motion grow
+static const double EASING = 1.6;       // by which steps of motion grow
 
-enum { MOST_STALE = 8, MOST_HALVINGS = 34, MOST_SHIFTS = 7, SETTLING = 20 };
+enum { MOST_STALE = 8, MOST_HALVINGS = 34, MOST_SHIFTS = 7, SETTLING = 10 };
 
 struct ruga_creased {
     ruga_creased_def def;
