@@ -437,11 +437,11 @@ static void hanging_cloth_is_that_of_a_conforming_mesh(void** state) {
     }
 }
 
-// Draped over the line between the corners. A cut of one freedom folds over evenly, free or half as stiff as
-// the cloth. (As stiff as the cloth it lies at 110 to 180 degrees, where a jump of 2 d sin(angle / 2) hardly
-// tells angles apart: what the cloth stretches makes ratios of 1.2 to 1.6 of them.) With auxiliary chords a
-// crease like the cloth is folded in part and must turn as that of the conforming mesh from the same start
-// does.
+// Draped over the line between the corners. A cut of one freedom folds over evenly, free or a tenth as stiff
+// as the cloth. (As stiff as the cloth it lies at 110 to 180 degrees, where a jump of 2 d sin(angle / 2)
+// hardly tells angles apart: what the cloth stretches makes ratios of 1.2 to 1.6 of them.) With auxiliary
+// chords a crease like the cloth is folded in part and must turn as that of the conforming mesh from the same
+// start does.
 static void a_crease_of_one_freedom_folds_evenly_and_others_as_they_must(void** state) {
     (void)state;
     const double off[] = {0.05, 0.13, 0.25, 0.37, 0.5};
@@ -449,9 +449,9 @@ static void a_crease_of_one_freedom_folds_evenly_and_others_as_they_must(void** 
         panel p, q;
         print_message("%.2f edges off\n", off[k]);
         for (int stiff = 0; stiff < 2; stiff++) {
-            make_hanging(RUGA_FREEDOM_SINGLE, off[k], stiff * LIKE_CLOTH / 2, DRAPED[0], DRAPED[1], &p);
+            make_hanging(RUGA_FREEDOM_SINGLE, off[k], stiff * LIKE_CLOTH / 10, DRAPED[0], DRAPED[1], &p);
             hanging h = settle(&p, "single");
-            assert_true(h.most < 1.4 * h.least && h.least > 130 * DEGREE);
+            assert_true(h.most < 1.4 * h.least && h.least > 150 * DEGREE);
             clear_panel(&p);
         }
         make_hanging(RUGA_FREEDOM_FULL, off[k], LIKE_CLOTH, DRAPED[0], DRAPED[1], &p);
