@@ -353,7 +353,8 @@ const ruga_key ruga_keys[] = {
     SECTION("creases.N.hinge", "{}",
             "The spring about the curve, k l / 2 (theta - rest)^2 for a length l of it."),
     VALUES("creases.N.hinge.stiffness", CREASE(stiffness), "N", "0.02 N", NOT_NEGATIVE, NULL,
-           "k, in N m/rad for each m. One value, or one for each point of polyline, uv or vertices."),
+           "k, in N m/rad for each m. One value, or one for each point of polyline, uv or vertices. More "
+           "than 1,000 E h times the mean edge counts as that."),
     NUMBER("creases.N.hinge.length", CREASE(length), "m", NULL, POSITIVE,
            "In place of stiffness: k = E h^3 / (12 (1 - nu^2)) over this length."),
     VALUES("creases.N.hinge.rest", CREASE(rest), "rad", "(as the mesh has it)", ANY, "assigned",

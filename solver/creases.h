@@ -39,6 +39,8 @@ typedef struct ruga_creases {
     double* whole;        // [hinges] N, that of the material without a crease
     double* drawn;        // [hinges] rad, the angle that the mesh has
     double* rest;         // [hinges] rad, before keys and plasticity
+    double* steepness;    // [hinges] 1/m^2, |grad theta|^2 as drawn
+    double answer;        // N/m, of all folds' forces to displacements: the root of the sum of their squares
     double* area;         // [nodes] m^2 of material
     double* share;        // [nodes] part of the vertex's area that this copy has
     double* fraction;     // [pieces] of the membrane

@@ -528,10 +528,11 @@ static ruga_status build_dense(ruga_model* model, double depth) {
 
 double ruga_model_force_floor(const ruga_model* model) {
     // A strain's round-off is that of positions over edges, so a nodal force has that of E h times the
-    // extent.
+    // extent; a stiff hinge's angle has that of positions over the distance to the crease.
     double stiffness = model->skin.young * model->skin.thickness;
-    double round_off = 0.25 * 0x1p-52 * model->extent * sqrt(3.0 * model->mesh.vertex_count);
-    return stiffness * fmax(1e-8 * model->mean_edge, round_off / model->solver.tolerance);
+    double answer = stiffness * sqrt(3.0 * model->mesh.vertex_count) + (model->creases ? model->creases->answer : 0);
+    double round_off = 0.25 * 0x1p-52 * model->extent * answer;
+    return fmax(1e-8 * model->mean_edge * stiffness, round_off / model->solver.tolerance);
 }
 
 bool ruga_model_is_prescribed(const ruga_model* model) {

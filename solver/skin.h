@@ -116,7 +116,7 @@ typedef struct ruga_skin_result {
 ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                ruga_skin_result* result);
 ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
-                                 ruga_skin_result* result);
+                                 bool while_convex, ruga_skin_result* result); // until the Hessian is not
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result);
 ruga_status ruga_paper_minimize(ruga_skin* skin, double* x, double tolerance, ruga_skin_result* result);
