@@ -11,6 +11,7 @@
 #include "core/vec3.h"
 #include "crease/mend.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -22,7 +23,8 @@ ruga_raster_def ruga_default_raster_def(void) {
                              .corner = 20 * RUGA_PI / 180,
                              .reach = 0.1,
                              .merge = 0.02,
-                             .rounds = 200};
+                             .rounds = 200,
+                             .stage = INT_MAX};
 }
 
 void ruga_raster_clear(ruga_raster* raster) {
@@ -245,7 +247,18 @@ static void decide_freedom(ruga_raster* r) {
     }
 }
 
-static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_curves* curves) {
+// The last stage up to `stage` at which there are curves.
+static int last_stage(const ruga_curves* curves, int stage) {
+    int last = 0;
+    for (int c = 0; c < curves->count; c++) {
+        int own = curves->curve[c].stage;
+        last = own > last && own <= stage ? own : last;
+    }
+    return last;
+}
+
+// Of the curves up to a stage.
+static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_curves* curves, int stage) {
     ruga_raster* r = b->raster;
     int vertices = r->mesh.vertex_count, edges = r->edges.edge_count;
     r->curve_count = curves->count;
@@ -269,9 +282,12 @@ static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_cu
         r->curve[c].vertex = NULL;
     }
     for (int pass = 0; pass < 2; pass++) { // cuts first: where a fold lies on one, it is cut
-        for (int p = 0; p < paths->count; p++) {
-            if ((r->curve[paths->path[p].curve].kind == RUGA_CREASE_CUT) == (pass == 0)) {
-                RUGA_TRY(add_path(b, &paths->path[p]));
+        for (int s = 0; s <= last_stage(curves, stage); s++) { // and then what came first
+            for (int p = 0; p < paths->count; p++) {
+                const ruga_curve* curve = &r->curve[paths->path[p].curve];
+                if ((curve->kind == RUGA_CREASE_CUT) == (pass == 0) && curve->stage == s) {
+                    RUGA_TRY(add_path(b, &paths->path[p]));
+                }
             }
         }
     }
@@ -279,10 +295,79 @@ static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_cu
     return sort_chords(r);
 }
 
+static void clear_build(build* b) {
+    ruga_release(b->first_curve);
+    ruga_release(b->links);
+    ruga_release(b->node_links);
+    ruga_release(b->node_curve);
+    ruga_release(b->head);
+    ruga_release(b->next);
+    *b = (build){0};
+}
+
+// ------------------------------------------------------------------------------- stages
+
+// The chord of triangle f between the places of `chord`, -1 = none.
+static int same_chord(const ruga_raster* r, int f, const ruga_chord* chord) {
+    for (int k = r->chord_start[f]; k < r->chord_start[f + 1]; k++) {
+        const int* end = r->chord[k].end;
+        if ((end[0] == chord->end[0] && end[1] == chord->end[1]) ||
+            (end[0] == chord->end[1] && end[1] == chord->end[0])) {
+            return k;
+        }
+    }
+    return -1;
+}
+
+static bool is_full(const ruga_raster* r, int f) {
+    for (int k = r->chord_start[f]; k < r->chord_start[f + 1]; k++) {
+        if (r->facts[r->chord[k].curve].full) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A stage of `whole`, which has all curves: freedom is that of the whole, and a triangle that auxiliary chords
+// divide is divided as there from the first, so that what is cut later lies within a piece of what is cut now.
+static ruga_status take_stage(const ruga_raster* whole, ruga_raster* r) {
+    ruga_chord* chord = NULL;
+    int *start = NULL, count = 0;
+    memcpy(r->facts, whole->facts, (size_t)r->curve_count * sizeof *r->facts);
+    RUGA_TRY(RUGA_NEW(chord, whole->chord_count + r->chord_count));
+    ruga_status status = RUGA_NEW(start, (size_t)r->mesh.triangle_count + 1);
+    if (status != RUGA_OK) {
+        ruga_release(chord);
+        return status;
+    }
+    for (int f = 0; f < r->mesh.triangle_count; f++) {
+        const ruga_raster* from = is_full(r, f) ? whole : r;
+        start[f] = count;
+        for (int k = from->chord_start[f]; k < from->chord_start[f + 1]; k++) {
+            ruga_chord* to = &chord[count++];
+            int own = same_chord(r, f, &from->chord[k]);
+            *to = own >= 0 ? r->chord[own] : from->chord[k];
+            to->curve = own >= 0 ? to->curve : -1;
+            for (int end = 0; end < 2; end++) {
+                int e = r->edges.triangle_edge[f][to->end[end] / 2];
+                r->node[e] = to->end[end] % 2 ? whole->node[e] : r->node[e];
+            }
+        }
+    }
+    start[r->mesh.triangle_count] = count;
+    ruga_release(r->chord);
+    ruga_release(r->chord_start);
+    r->chord = chord;
+    r->chord_count = count;
+    r->chord_start = start;
+    return RUGA_OK;
+}
+
 ruga_status ruga_raster_create(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
                                ruga_raster* raster) {
     ruga_status status = RUGA_OK;
     *raster = (ruga_raster){0};
+    ruga_raster whole = {0};
     ruga_sheet sheet = {0};
     ruga_paths paths = {0};
     ruga_mend mend = {.sheet = &sheet, .paths = &paths, .def = def};
@@ -307,18 +392,24 @@ ruga_status ruga_raster_create(const ruga_mesh* mesh, const ruga_curves* curves,
     raster->edges = sheet.edges;
     sheet.mesh = (ruga_mesh){0};
     sheet.edges = (ruga_connectivity){0};
-    b.sheet = &(ruga_sheet){.mesh = raster->mesh, .edges = raster->edges, .edge = sheet.edge};
-    RUGA_TRY_DONE(build_chords(&b, &paths, curves));
+    ruga_sheet drawn = {.mesh = raster->mesh, .edges = raster->edges, .edge = sheet.edge};
+    b.sheet = &drawn;
+    RUGA_TRY_DONE(build_chords(&b, &paths, curves, def->stage));
+    if (last_stage(curves, INT_MAX) > def->stage) {
+        clear_build(&b);
+        whole = (ruga_raster){.mesh = raster->mesh, .edges = raster->edges}; // lent
+        b = (build){.raster = &whole, .sheet = &drawn};
+        RUGA_TRY_DONE(build_chords(&b, &paths, curves, INT_MAX));
+        RUGA_TRY_DONE(take_stage(&whole, raster));
+    }
     raster->moved = mend.moved;
     raster->split_edges = mend.split_edges;
     raster->split_faces = mend.split_faces;
 done:
-    ruga_release(b.first_curve);
-    ruga_release(b.links);
-    ruga_release(b.node_links);
-    ruga_release(b.node_curve);
-    ruga_release(b.head);
-    ruga_release(b.next);
+    clear_build(&b);
+    whole.mesh = (ruga_mesh){0};
+    whole.edges = (ruga_connectivity){0};
+    ruga_raster_clear(&whole);
     ruga_mend_clear(&mend);
     ruga_paths_clear(&paths);
     ruga_sheet_clear(&sheet);

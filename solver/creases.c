@@ -18,6 +18,7 @@
 #include <string.h>
 
 static const double LEAST_FRACTION = 0.01;
+static const double ON_A_FRAME = 1e-9;
 
 void ruga_creases_destroy(ruga_creases** creases) {
     ruga_creases* c = *creases;
@@ -33,7 +34,7 @@ void ruga_creases_destroy(ruga_creases** creases) {
     ruga_sewing_clear(&c->sewing);
     ruga_connectivity_clear(&c->shown);
     void* const owned[] = {c->law,  c->segment, c->hinge,    c->stiffness, c->drawn, c->rest,
-                           c->area, c->share,   c->fraction, c->mass,      c->bend,  c->pair,    c->whole};
+                           c->area, c->share,   c->fraction, c->mass,      c->bend,  c->pair};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
         ruga_release(owned[i]);
     }
@@ -92,7 +93,7 @@ static ruga_status check_def(int index, const ruga_crease_def* def) {
 
 static ruga_status copy_law(const ruga_crease_def* def, ruga_crease_law* law) {
     *law = (ruga_crease_law){
-        .start = def->start > 0 ? def->start : -INFINITY, .yield = def->yield, .rate = def->rate, .hardening = def->hardening, .assignment = def->assignment};
+        .yield = def->yield, .rate = def->rate, .hardening = def->hardening, .assignment = def->assignment};
     RUGA_TRY(RUGA_NEW(law->keys, def->key_count));
     for (int k = 0; k < def->key_count; k++) {
         law->keys[k] = def->keys[k];
@@ -113,7 +114,7 @@ static bool varies(int count, const double* values) {
     return false;
 }
 
-static ruga_status add_curve(int index, const ruga_crease_def* def, const ruga_mesh* mesh,
+static ruga_status add_curve(int index, const ruga_crease_def* def, int stage, const ruga_mesh* mesh,
                              const ruga_connectivity* edges, ruga_curves* curves) {
     int points = def->path == RUGA_CREASE_EDGES ? def->vertex_count : def->point_count;
     const ruga_curve style = {.kind = def->kind,
@@ -121,7 +122,8 @@ static ruga_status add_curve(int index, const ruga_crease_def* def, const ruga_m
                               .varies =
                                   varies(points, def->point_rest) || varies(points, def->point_stiffness),
                               .closed = def->closed,
-                              .label = index};
+                              .label = index,
+                              .stage = stage};
     switch (def->path) {
     case RUGA_CREASE_UV:
         return ruga_curves_add_uv(curves, &style, mesh, points, (const double(*)[2])def->points);
@@ -134,18 +136,40 @@ static ruga_status add_curve(int index, const ruga_crease_def* def, const ruga_m
     }
 }
 
-static ruga_status add_curves(int count, const ruga_crease_def* defs, const ruga_mesh* mesh,
+static ruga_status add_curves(int count, const ruga_crease_def* defs, const int* stage, const ruga_mesh* mesh,
                               const ruga_connectivity* edges, ruga_creases* c, ruga_curves* curves) {
     for (int i = 0; i < count; i++) {
         RUGA_TRY(check_def(i, &defs[i]));
         c->law_count = i + 1;
         RUGA_TRY(copy_law(&defs[i], &c->law[i]));
-        ruga_status status = add_curve(i, &defs[i], mesh, edges, curves);
+        ruga_status status = add_curve(i, &defs[i], stage[i], mesh, edges, curves);
         if (status != RUGA_OK) {
             return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "creases.%d", i) : status;
         }
     }
     return RUGA_OK;
+}
+
+static double frames_to(double start, double step) {
+    double frames = start / step, whole = round(frames);
+    return fabs(frames - whole) <= ON_A_FRAME * fmax(whole, 1) ? whole : frames;
+}
+
+int ruga_creases_stages(int count, const ruga_crease_def* defs, double step, int* stage, double* end) {
+    int stages = 0;
+    memset(stage, 0, (size_t)count * sizeof *stage);
+    for (double last = 0;; stages++) {
+        double next = INFINITY;
+        for (int i = 0; i < count; i++) {
+            double own = frames_to(defs[i].start, step);
+            stage[i] += own > last;
+            next = own > last ? fmin(next, own) : next;
+        }
+        if (isinf(next)) {
+            return stages;
+        }
+        last = end[stages] = next;
+    }
 }
 
 // ---- pieces --------------------------------------------------------------------------------------------
@@ -238,7 +262,6 @@ static ruga_status set_hinges(ruga_creases* c, const ruga_crease_def* defs, cons
     RUGA_TRY(RUGA_NEW(c->hinge, count));
     RUGA_TRY(RUGA_NEW_ZERO(c->stiffness, count));
     RUGA_TRY(RUGA_NEW(c->drawn, count));
-    RUGA_TRY(RUGA_NEW_ZERO(c->whole, count));
     RUGA_TRY(RUGA_NEW(c->rest, count));
     RUGA_TRY(RUGA_NEW(c->pair, (RUGA_HINGE_NODES * (RUGA_HINGE_NODES - 1) / 2) * (size_t)count));
     RUGA_TRY_DONE(RUGA_NEW(made, count));
@@ -275,7 +298,7 @@ done:
 
 // k = l / (A1 / D1 + A2 / D2) for each length, A the material on both sides: as in a mesh that conforms.
 void ruga_creases_set_bending(ruga_creases* c, const ruga_shell_material* material) {
-    for (int h = 0; h < c->hinge_count; h++) {
+    for (int h = c->segment_count; h < c->hinge_count; h++) {
         const ruga_segment* segment = &c->cut.segment[c->segment[h]];
         double softness = 0;
         for (int side = 0; side < 2; side++) {
@@ -284,23 +307,24 @@ void ruga_creases_set_bending(ruga_creases* c, const ruga_shell_material* materi
             softness += piece->fraction * ruga_mesh_triangle_area(&c->raster.mesh, piece->triangle) /
                         ruga_shell_material_bending(material, p);
         }
-        c->whole[h] = segment->length / softness;
-        c->stiffness[h] = h < c->segment_count ? c->stiffness[h] : c->whole[h];
+        c->stiffness[h] = segment->length / softness;
     }
 }
 
 // ---- the whole -----------------------------------------------------------------------------------------
 
-ruga_status ruga_creases_create(int count, const ruga_crease_def* defs, const ruga_mesh* mesh,
-                                const ruga_connectivity* connectivity, ruga_creases** creases) {
+ruga_status ruga_creases_create(int count, const ruga_crease_def* defs, const int* stage, int now,
+                                const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                ruga_creases** creases) {
     ruga_status status = RUGA_OK;
-    const ruga_raster_def how = ruga_default_raster_def();
+    ruga_raster_def how = ruga_default_raster_def();
     ruga_curves curves = {0};
     ruga_creases* c = NULL;
     *creases = NULL;
+    how.stage = now;
     RUGA_TRY(RUGA_NEW_ZERO(c, 1));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(c->law, count));
-    RUGA_TRY_DONE(add_curves(count, defs, mesh, connectivity, c, &curves));
+    RUGA_TRY_DONE(add_curves(count, defs, stage, mesh, connectivity, c, &curves));
     status = ruga_raster_create(mesh, &curves, &how, &c->raster);
     if (status == RUGA_BAD_INPUT) {
         status = ruga_fail_prefix(status, "creases");
@@ -502,10 +526,6 @@ done:
 
 int ruga_crease_law_of(const ruga_creases* c, int hinge) {
     return c->raster.curve[c->hinge[hinge].curve].label;
-}
-
-bool ruga_crease_is_there(const ruga_creases* c, int hinge, double time) {
-    return time >= c->law[ruga_crease_law_of(c, hinge)].start;
 }
 
 double ruga_crease_rest_at(const ruga_creases* c, int hinge, double time) {
