@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// A piece and the pieces that it is cut into are parts of one triangle, and move as its corners say: where the
-// corners of the parts' copies begin at those of the whole's, each place of the material begins where it was,
-// at the velocity that it had. Masses in equal thirds (ruga_cut_masses) add up to those of the whole, so that
-// momentum, angular momentum and kinetic energy are what they were. Copies that finer pieces share are shared
-// by the coarser ones around them, which have more material in common: so one piece of those that hold a node
-// tells where it comes from.
+// A piece and the pieces that it is cut into are parts of one triangle, and move as its corners say: where
+// the corners of the parts' copies begin at those of the whole's, each place of the material begins where it
+// was, at the velocity that it had. Masses in equal thirds (ruga_cut_masses) add up to those of the whole, so
+// that momentum, angular momentum and kinetic energy are what they were. Copies that finer pieces share are
+// shared by the coarser ones around them, which have more material in common: so one piece of those that hold
+// a node tells where it comes from.
 #include "crease/nest.h"
 
 #include "core/memory.h"
@@ -94,7 +94,8 @@ ruga_status ruga_nest_create(const ruga_cut* fine, const ruga_cut* coarse, ruga_
     RUGA_TRY_DONE(RUGA_NEW(piece, fine->piece_count));
     RUGA_TRY_DONE(RUGA_NEW(list, coarse->segment_count));
     find_pieces(fine, coarse, piece);
-    memcpy(nest->node, fine->source, (size_t)fine->node_count * sizeof *nest->node); // of vertices without a face
+    memcpy(nest->node, fine->source,
+           (size_t)fine->node_count * sizeof *nest->node); // of vertices without a face
     for (int p = 0; p < fine->piece_count; p++) {
         for (int i = 0; i < 3; i++) {
             nest->node[fine->piece[p].node[i]] = coarse->piece[piece[p]].node[i];

@@ -294,11 +294,12 @@ static void reverse(ruga_hits* hits, int begin, int first_face) {
     }
 }
 
+// At an end of the first piece: there may be no other.
 static ruga_status add_own_vertex(ruga_path* path, int station) {
     ruga_hits* hits = &path->hits;
     RUGA_TRY(RUGA_RESERVE(hits->hit, hits->capacity, (size_t)hits->count + 1));
     hits->hit[hits->count++] =
-        (ruga_hit){.vertex = path->station[station].place.vertex, .edge = -1, .face = -1, .stretch = station};
+        (ruga_hit){.vertex = path->station[station].place.vertex, .edge = -1, .face = -1, .stretch = 0};
     return RUGA_OK;
 }
 

@@ -328,8 +328,9 @@ static bool is_full(const ruga_raster* r, int f) {
     return false;
 }
 
-// A stage of `whole`, which has all curves: freedom is that of the whole, and a triangle that auxiliary chords
-// divide is divided as there from the first, so that what is cut later lies within a piece of what is cut now.
+// A stage of `whole`, which has all curves: freedom is that of the whole, and a triangle that auxiliary
+// chords divide is divided as there from the first, so that what is cut later lies within a piece of what is
+// cut now.
 static ruga_status take_stage(const ruga_raster* whole, ruga_raster* r) {
     ruga_chord* chord = NULL;
     int *start = NULL, count = 0;

@@ -396,7 +396,8 @@ ruga_status ruga_creases_edges(const ruga_mesh* nodes, ruga_connectivity* edges)
     ruga_status status = RUGA_OK;
     int halves = 3 * nodes->triangle_count, (*pair)[2] = NULL;
     ruga_sparse lower = {0};
-    *edges = (ruga_connectivity){.vertex_count = nodes->vertex_count, .triangle_count = nodes->triangle_count};
+    *edges =
+        (ruga_connectivity){.vertex_count = nodes->vertex_count, .triangle_count = nodes->triangle_count};
     RUGA_TRY_DONE(RUGA_NEW(pair, halves));
     for (int k = 0; k < halves; k++) {
         pair[k][0] = nodes->triangle[k];

@@ -10,7 +10,8 @@
 #include "solver/model.h"
 #include "solver/state.h"
 
-// For ruga_model_create: finds where nodes and hinges of a model are in the one before it, and where it starts.
+// For ruga_model_create: finds where nodes and hinges of a model are in the one before it, and where it
+// starts.
 ruga_status ruga_stage_follow(ruga_model* model, const ruga_model* before);
 // Lets go of what was not held before: it has moved.
 void ruga_stage_release_holds(ruga_model* model, const ruga_model* before);

@@ -60,7 +60,8 @@ static void show_angles(ruga_state* state, const double* x) {
         int own = state->whole->stage[state->stage].hinge[h];
         bool there = own >= 0 && own < hinges->segments &&
                      hinges->creases->hinge[own].curve == creases->hinge[h].curve;
-        state->angle[h] = own >= 0 ? hinges->near[own] : ruga_hinge_measure(&creases->hinge[h], x, NULL, NULL);
+        state->angle[h] =
+            own >= 0 ? hinges->near[own] : ruga_hinge_measure(&creases->hinge[h], x, NULL, NULL);
         state->rest[h] = there ? hinges->rest[own] : state->angle[h];
     }
 }
@@ -194,8 +195,7 @@ void ruga_state_segment_gaps(const ruga_state* state, double* gap) {
     const double* x = of_whole(state, state->x);
     for (int h = 0; creases && h < creases->segment_count; h++) {
         const int* end = creases->cut.segment[creases->segment[h]].end;
-        gap[h] =
-            fmax(ruga_cut_gap_at(&creases->cut, end[0], x), ruga_cut_gap_at(&creases->cut, end[1], x));
+        gap[h] = fmax(ruga_cut_gap_at(&creases->cut, end[0], x), ruga_cut_gap_at(&creases->cut, end[1], x));
     }
 }
 
