@@ -2,9 +2,12 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // Rasterisation of curves to a mesh (Patkar, Jin and Fedkiw 2015, section 3): mend.c makes rounds until the
-// curves fit; here their hits become chords. An end inside the mesh is, with snap, a vertex. Without it the
+// curves fit, here their hits become chords. An end inside the mesh is, with snap, a vertex. Without it the
 // part within the last triangle is dropped and, where the last hit is on an inner edge, the curve is led on
 // to the opposite vertex (figure 4): without that the two sides of the cut could not turn at all.
+//
+// Where curves of later stages can do with the mesh as it is mended for those before, it stays as it is: so
+// it is without them. Where they need a vertex it is mended for all at once, which makes better triangles.
 #include "crease/raster.h"
 
 #include "core/memory.h"
@@ -38,6 +41,16 @@ void ruga_raster_clear(ruga_raster* raster) {
     ruga_release(raster->curve);
     ruga_release(raster->facts);
     *raster = (ruga_raster){0};
+}
+
+// The last stage up to `stage` at which there are curves.
+static int last_stage(const ruga_curves* curves, int stage) {
+    int last = 0;
+    for (int c = 0; c < curves->count; c++) {
+        int own = curves->curve[c].stage;
+        last = own > last && own <= stage ? own : last;
+    }
+    return last;
 }
 
 // ------------------------------------------------------------------------------- ends
@@ -247,16 +260,6 @@ static void decide_freedom(ruga_raster* r) {
     }
 }
 
-// The last stage up to `stage` at which there are curves.
-static int last_stage(const ruga_curves* curves, int stage) {
-    int last = 0;
-    for (int c = 0; c < curves->count; c++) {
-        int own = curves->curve[c].stage;
-        last = own > last && own <= stage ? own : last;
-    }
-    return last;
-}
-
 // Of the curves up to a stage.
 static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_curves* curves, int stage) {
     ruga_raster* r = b->raster;
@@ -364,56 +367,98 @@ static ruga_status take_stage(const ruga_raster* whole, ruga_raster* r) {
     return RUGA_OK;
 }
 
+typedef struct fitted {
+    ruga_sheet sheet;
+    ruga_paths paths;
+    ruga_mend mend;
+    int rounds;
+} fitted;
+
+static void clear_fitted(fitted* f) {
+    ruga_mend_clear(&f->mend);
+    ruga_paths_clear(&f->paths);
+    ruga_sheet_clear(&f->sheet);
+    *f = (fitted){0};
+}
+
+static int count_splits(const fitted* f) {
+    return f->mend.split_edges + f->mend.split_faces;
+}
+
+// Mends the sheet for the curves from one stage to another.
+static ruga_status fit_stages(const ruga_curves* curves, const int stages[2], const ruga_raster_def* def,
+                              fitted* f) {
+    bool fits = false;
+    RUGA_TRY(ruga_paths_add(&f->sheet, curves, stages, def->snap, def->corner, &f->paths));
+    for (int k = 0; !fits && k < def->rounds; k++, f->rounds++) {
+        RUGA_TRY(ruga_mend_round(&f->mend, &fits));
+    }
+    return fits ? RUGA_OK : ruga_mend_give_up(&f->mend);
+}
+
+static ruga_status start_fit(const ruga_mesh* mesh, const ruga_raster_def* def, fitted* f) {
+    clear_fitted(f);
+    f->mend = (ruga_mend){.sheet = &f->sheet, .paths = &f->paths, .def = def};
+    return ruga_sheet_create(mesh, &f->sheet);
+}
+
+static ruga_status fit(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
+                       fitted* f) {
+    int last = last_stage(curves, INT_MAX);
+    RUGA_TRY(start_fit(mesh, def, f));
+    RUGA_TRY(fit_stages(curves, (const int[2]){0, 0}, def, f));
+    int splits = count_splits(f);
+    for (int s = 1; s <= last; s++) {
+        memset(f->sheet.pinned, true, (size_t)f->sheet.mesh.vertex_count * sizeof *f->sheet.pinned);
+        ruga_status status = fit_stages(curves, (const int[2]){s, s}, def, f);
+        if (status == RUGA_BAD_INPUT || (status == RUGA_OK && count_splits(f) > splits)) {
+            RUGA_TRY(start_fit(mesh, def, f));
+            return fit_stages(curves, (const int[2]){0, last}, def, f);
+        }
+        RUGA_TRY(status);
+    }
+    return RUGA_OK;
+}
+
 ruga_status ruga_raster_create(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
                                ruga_raster* raster) {
     ruga_status status = RUGA_OK;
     *raster = (ruga_raster){0};
     ruga_raster whole = {0};
-    ruga_sheet sheet = {0};
-    ruga_paths paths = {0};
-    ruga_mend mend = {.sheet = &sheet, .paths = &paths, .def = def};
-    build b = {.raster = raster, .sheet = &sheet};
-    bool fits = false;
-    RUGA_TRY_DONE(ruga_sheet_create(mesh, &sheet));
-    RUGA_TRY_DONE(ruga_paths_create(&sheet, curves, def->snap, def->corner, &paths));
-    for (; !fits && raster->rounds < def->rounds; raster->rounds++) {
-        RUGA_TRY_DONE(ruga_mend_round(&mend, &fits));
-    }
-    if (!fits) {
-        status = ruga_mend_give_up(&mend);
-        goto done;
-    }
-    for (int p = 0; p < paths.count && def->extend; p++) {
-        RUGA_TRY_DONE(extend_path(&sheet, &paths.path[p]));
+    fitted f = {0};
+    ruga_sheet drawn;
+    build b = {.raster = raster};
+    RUGA_TRY_DONE(fit(mesh, curves, def, &f));
+    for (int p = 0; p < f.paths.count && def->extend; p++) {
+        RUGA_TRY_DONE(extend_path(&f.sheet, &f.paths.path[p]));
     }
     if (!def->snap && def->extend) {
-        RUGA_TRY_DONE(ruga_mend_check(&mend));
+        RUGA_TRY_DONE(ruga_mend_check(&f.mend));
     }
-    raster->mesh = sheet.mesh;
-    raster->edges = sheet.edges;
-    sheet.mesh = (ruga_mesh){0};
-    sheet.edges = (ruga_connectivity){0};
-    ruga_sheet drawn = {.mesh = raster->mesh, .edges = raster->edges, .edge = sheet.edge};
+    raster->mesh = f.sheet.mesh;
+    raster->edges = f.sheet.edges;
+    f.sheet.mesh = (ruga_mesh){0};
+    f.sheet.edges = (ruga_connectivity){0};
+    drawn = (ruga_sheet){.mesh = raster->mesh, .edges = raster->edges, .edge = f.sheet.edge};
     b.sheet = &drawn;
-    RUGA_TRY_DONE(build_chords(&b, &paths, curves, def->stage));
+    RUGA_TRY_DONE(build_chords(&b, &f.paths, curves, def->stage));
     if (last_stage(curves, INT_MAX) > def->stage) {
         clear_build(&b);
         whole = (ruga_raster){.mesh = raster->mesh, .edges = raster->edges}; // lent
         b = (build){.raster = &whole, .sheet = &drawn};
-        RUGA_TRY_DONE(build_chords(&b, &paths, curves, INT_MAX));
+        RUGA_TRY_DONE(build_chords(&b, &f.paths, curves, INT_MAX));
         RUGA_TRY_DONE(take_stage(&whole, raster));
     }
-    raster->moved = mend.moved;
-    raster->split_edges = mend.split_edges;
-    raster->split_faces = mend.split_faces;
+    raster->moved = f.mend.moved;
+    raster->split_edges = f.mend.split_edges;
+    raster->split_faces = f.mend.split_faces;
+    raster->rounds = f.rounds;
 done:
     clear_build(&b);
     whole.mesh = (ruga_mesh){0};
     whole.edges = (ruga_connectivity){0};
     ruga_raster_clear(&whole);
-    ruga_mend_clear(&mend);
-    ruga_paths_clear(&paths);
-    ruga_sheet_clear(&sheet);
+    clear_fitted(&f);
     if (status != RUGA_OK) {
         ruga_raster_clear(raster);
     }
