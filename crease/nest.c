@@ -45,19 +45,20 @@ static bool lies_within(const ruga_outline* part, const ruga_outline* whole) {
     return true;
 }
 
-// piece [pieces of the finer]: both lists are by triangle.
-static void find_pieces(const ruga_cut* fine, const ruga_cut* coarse, int* piece) {
+// piece [pieces of the finer]: both lists are by triangle. False where one lies within none.
+static bool find_pieces(const ruga_cut* fine, const ruga_cut* coarse, int* piece) {
     for (int p = 0, first = 0; p < fine->piece_count; p++) {
         while (coarse->piece[first].triangle < fine->piece[p].triangle) {
             first++;
         }
-        int at = first;
-        while (!lies_within(&fine->piece[p].polygon, &coarse->piece[at].polygon)) {
-            at++;
-            RUGA_ASSERT(at < coarse->piece_count && coarse->piece[at].triangle == fine->piece[p].triangle);
+        for (piece[p] = first; !lies_within(&fine->piece[p].polygon, &coarse->piece[piece[p]].polygon);) {
+            if (++piece[p] == coarse->piece_count ||
+                coarse->piece[piece[p]].triangle != fine->piece[p].triangle) {
+                return false;
+            }
         }
-        piece[p] = at;
     }
+    return true;
 }
 
 static int compare_pairs(const void* a, const void* b) {
@@ -93,7 +94,11 @@ ruga_status ruga_nest_create(const ruga_cut* fine, const ruga_cut* coarse, ruga_
     RUGA_TRY_DONE(RUGA_NEW(nest->segment, fine->segment_count));
     RUGA_TRY_DONE(RUGA_NEW(piece, fine->piece_count));
     RUGA_TRY_DONE(RUGA_NEW(list, coarse->segment_count));
-    find_pieces(fine, coarse, piece);
+    if (!find_pieces(fine, coarse, piece)) {
+        status =
+            ruga_fail(RUGA_BAD_INPUT, "the later creases divide triangles otherwise than the earlier ones");
+        goto done;
+    }
     memcpy(nest->node, fine->source,
            (size_t)fine->node_count * sizeof *nest->node); // of vertices without a face
     for (int p = 0; p < fine->piece_count; p++) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// A cut within a coarser one: what was one when further curves were cut. Both are of stages of one raster
-// (raster.h), so that each piece of the finer one lies within a piece of the coarser one.
+// A cut within a coarser one: what was one when further curves were cut. Where both are of stages of one raster
+// (raster.h), each piece of the finer one lies within a piece of the coarser one.
 #ifndef RUGA_CREASE_NEST_H
 #define RUGA_CREASE_NEST_H
 
@@ -13,6 +13,7 @@ typedef struct ruga_nest {
     int* segment; // [segments of the finer] segment of the coarser between the same two pieces, -1 = none
 } ruga_nest;
 
+// Both on one mesh. RUGA_BAD_INPUT where one is not within the other.
 ruga_status ruga_nest_create(const ruga_cut* fine, const ruga_cut* coarse, ruga_nest* nest);
 void ruga_nest_clear(ruga_nest* nest);
 

@@ -529,6 +529,18 @@ int ruga_crease_law_of(const ruga_creases* c, int hinge) {
     return c->raster.curve[c->hinge[hinge].curve].label;
 }
 
+double ruga_creases_shown_angle(const ruga_creases* c, int hinge, const double* shown) {
+    const int* end = c->cut.segment[c->segment[hinge]].end;
+    int e = ruga_edge_between(&c->shown, end[0], end[1]);
+    const double* x[4];
+    RUGA_ASSERT(e >= 0);
+    for (int i = 0; i < 2; i++) {
+        x[i] = shown + 3 * (size_t)c->shown.edge[e][i];
+        x[2 + i] = shown + 3 * (size_t)c->shown.edge_opposite[e][i];
+    }
+    return ruga_hinge_angle(x, NULL);
+}
+
 double ruga_crease_rest_at(const ruga_creases* c, int hinge, double time) {
     const ruga_crease_law* law = &c->law[ruga_crease_law_of(c, hinge)];
     const ruga_crease_key* keys = law->keys;

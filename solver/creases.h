@@ -70,6 +70,8 @@ ruga_shell_cut ruga_creases_shell(const ruga_creases* creases);
 ruga_status ruga_creases_tie(const ruga_creases* creases, ruga_clusters* clusters);
 // What stretching of rest angles a crease's keys give at a time: angle + scale times rest.
 double ruga_crease_rest_at(const ruga_creases* creases, int hinge, double time);
+// The angle, in (-pi, pi], of the material that is shown, [vertices][3], at the segment of a hinge.
+double ruga_creases_shown_angle(const ruga_creases* creases, int hinge, const double* shown);
 // Number of the def that a hinge belongs to.
 int ruga_crease_law_of(const ruga_creases* creases, int hinge);
 

@@ -53,15 +53,14 @@ static const double* of_whole(const ruga_state* state, const double* x) {
 }
 
 // A crease that is still to come has the angle of the sheet, and rests there.
-static void show_angles(ruga_state* state, const double* x) {
+static void show_angles(ruga_state* state) {
     const ruga_creases* creases = state->whole->creases;
     const ruga_hinges* hinges = state->skin->hinges;
     for (int h = 0; h < creases->segment_count; h++) {
         int own = state->whole->stage[state->stage].hinge[h];
         bool there = own >= 0 && own < hinges->segments &&
                      hinges->creases->hinge[own].curve == creases->hinge[h].curve;
-        state->angle[h] =
-            own >= 0 ? hinges->near[own] : ruga_hinge_measure(&creases->hinge[h], x, NULL, NULL);
+        state->angle[h] = own >= 0 ? hinges->near[own] : ruga_creases_shown_angle(creases, h, state->shown);
         state->rest[h] = there ? hinges->rest[own] : state->angle[h];
     }
 }
@@ -74,7 +73,7 @@ void ruga_state_show(ruga_state* state) {
         ruga_cut_material(&creases->cut, of_whole(state, state->x), state->shown);
     }
     if (state->angle) {
-        show_angles(state, state->spread);
+        show_angles(state);
     }
 }
 
