@@ -120,7 +120,7 @@ static ruga_status fail_mesh(const adding* a) {
     return ruga_fail(
         RUGA_BAD_INPUT,
         "%s, or a crease behind it, needs vertices or edges that the mesh of %s has not, as where it ends "
-        "within the sheet, turns, or meets another: make all frames anew with --force",
+        "within the sheet, bends, or meets another: make all frames anew with --force",
         a->scene->def.creases[a->before->def.crease_count].name, a->path);
 }
 

@@ -403,12 +403,12 @@ static ruga_status start_fit(const ruga_mesh* mesh, const ruga_raster_def* def, 
 }
 
 static ruga_status fit(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
-                       fitted* f) {
+                       bool apart, fitted* f) {
     int last = last_stage(curves, INT_MAX);
     RUGA_TRY(start_fit(mesh, def, f));
-    RUGA_TRY(fit_stages(curves, (const int[2]){0, 0}, def, f));
+    RUGA_TRY(fit_stages(curves, (const int[2]){0, apart ? 0 : last}, def, f));
     int splits = count_splits(f);
-    for (int s = 1; s <= last; s++) {
+    for (int s = 1; s <= last && apart; s++) {
         memset(f->sheet.pinned, true, (size_t)f->sheet.mesh.vertex_count * sizeof *f->sheet.pinned);
         ruga_status status = fit_stages(curves, (const int[2]){s, s}, def, f);
         if (status == RUGA_BAD_INPUT || (status == RUGA_OK && count_splits(f) > splits)) {
@@ -420,15 +420,30 @@ static ruga_status fit(const ruga_mesh* mesh, const ruga_curves* curves, const r
     return RUGA_OK;
 }
 
-ruga_status ruga_raster_create(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
-                               ruga_raster* raster) {
+// Whether a later curve has auxiliary chords near a vertex.
+static bool makes_slivers(const ruga_raster* r, const ruga_raster_def* def) {
+    for (int k = 0; k < r->chord_count; k++) {
+        const ruga_chord* chord = &r->chord[k];
+        for (int end = 0; end < 2 && r->curve[chord->curve].stage > 0 && r->facts[chord->curve].full; end++) {
+            double node = r->node[r->edges.triangle_edge[chord->triangle][chord->end[end] / 2]];
+            if (chord->end[end] % 2 && fmin(node, 1 - node) < def->reach) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Mended stage for stage where `apart`; *thin is SET where it is better not to.
+static ruga_status create(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
+                          bool apart, ruga_raster* raster, bool* thin) {
     ruga_status status = RUGA_OK;
     *raster = (ruga_raster){0};
     ruga_raster whole = {0};
     fitted f = {0};
     ruga_sheet drawn;
     build b = {.raster = raster};
-    RUGA_TRY_DONE(fit(mesh, curves, def, &f));
+    RUGA_TRY_DONE(fit(mesh, curves, def, apart, &f));
     for (int p = 0; p < f.paths.count && def->extend; p++) {
         RUGA_TRY_DONE(extend_path(&f.sheet, &f.paths.path[p]));
     }
@@ -442,11 +457,13 @@ ruga_status ruga_raster_create(const ruga_mesh* mesh, const ruga_curves* curves,
     drawn = (ruga_sheet){.mesh = raster->mesh, .edges = raster->edges, .edge = f.sheet.edge};
     b.sheet = &drawn;
     RUGA_TRY_DONE(build_chords(&b, &f.paths, curves, def->stage));
+    *thin = makes_slivers(raster, def);
     if (last_stage(curves, INT_MAX) > def->stage) {
         clear_build(&b);
         whole = (ruga_raster){.mesh = raster->mesh, .edges = raster->edges}; // lent
         b = (build){.raster = &whole, .sheet = &drawn};
         RUGA_TRY_DONE(build_chords(&b, &f.paths, curves, INT_MAX));
+        *thin = makes_slivers(&whole, def);
         RUGA_TRY_DONE(take_stage(&whole, raster));
     }
     raster->moved = f.mend.moved;
@@ -463,4 +480,15 @@ done:
         ruga_raster_clear(raster);
     }
     return status;
+}
+
+ruga_status ruga_raster_create(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
+                               ruga_raster* raster) {
+    bool thin = false;
+    RUGA_TRY(create(mesh, curves, def, true, raster, &thin));
+    if (thin) {
+        ruga_raster_clear(raster);
+        RUGA_TRY(create(mesh, curves, def, false, raster, &thin));
+    }
+    return RUGA_OK;
 }

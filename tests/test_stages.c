@@ -132,6 +132,39 @@ static void later_cuts_lie_within_earlier_ones(void** state) {
     assert_true(cut > 300 && refined > 150);
 }
 
+// A straight line across, whatever its distance from vertices, needs none; one that ends within the sheet,
+// and one with auxiliary chords near vertices, are worth another mesh.
+static void a_later_line_across_leaves_the_mesh_as_it_is(void** state) {
+    (void)state;
+    int kept[3] = {0, 0, 0};
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        for (int how = 0; how < 3; how++) {
+            ruga_random random = {seed};
+            double size[2];
+            crease_case c = {0};
+            random_mesh(&random, size, &c.mesh);
+            ruga_raster_def def = ruga_default_raster_def();
+            add_line(&c.curves, RUGA_FREEDOM_AUTO, 0.3 * size[0], -1, 0.4 * size[0], 0.6 * size[1]);
+            assert_ok(ruga_raster_create(&c.mesh, &c.curves, &def, &c.raster));
+            ruga_mesh alone = c.raster.mesh;
+            c.raster.mesh = (ruga_mesh){0};
+            ruga_raster_clear(&c.raster);
+            double x = size[0] * uniform(&random, 0.55, 0.9);
+            add_line(&c.curves, how == 2 ? RUGA_FREEDOM_FULL : RUGA_FREEDOM_SINGLE, x, -1, x + 0.1,
+                     how == 1 ? 0.45 * size[1] : size[1] + 1);
+            c.curves.curve[1].stage = 1;
+            assert_ok(ruga_raster_create(&c.mesh, &c.curves, &def, &c.raster));
+            kept[how] += c.raster.mesh.vertex_count == alone.vertex_count &&
+                         memcmp(c.raster.mesh.position, alone.position,
+                                3 * (size_t)alone.vertex_count * sizeof *alone.position) == 0;
+            ruga_mesh_clear(&alone);
+            clear_case(&c);
+        }
+    }
+    print_message("%d, %d and %d of 60 meshes as they were\n", kept[0], kept[1], kept[2]);
+    assert_true(kept[0] > 55 && kept[1] < 10 && kept[2] < 45);
+}
+
 static void the_last_stage_is_the_whole(void** state) {
     (void)state;
     for (uint64_t seed = 1; seed <= 60; seed++) {
@@ -532,6 +565,7 @@ static void each_allocation_may_fail(void** state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(later_cuts_lie_within_earlier_ones),
+        cmocka_unit_test(a_later_line_across_leaves_the_mesh_as_it_is),
         cmocka_unit_test(the_last_stage_is_the_whole),
         cmocka_unit_test(before_it_comes_there_is_no_crease),
         cmocka_unit_test(nothing_jumps_when_it_comes),
