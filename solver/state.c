@@ -211,27 +211,33 @@ const double* ruga_state_lattice(const ruga_state* state) {
 
 // ---- stages --------------------------------------------------------------------------------------------
 
+// The state becomes another one, which is destroyed; what it shows stays in its place.
+static void become(ruga_state* state, ruga_state* other) {
+    ruga_state old = *state;
+    *state = *other;
+    state->shown = old.shown;
+    state->shown_embedded = old.shown_embedded;
+    old.shown = other->shown;
+    old.shown_embedded = other->shown_embedded;
+    *other = old;
+    ruga_state_destroy(&other);
+    ruga_state_show(state);
+}
+
 // Cuts the creases of the next stage.
 ruga_status ruga_state_enter_next_stage(ruga_state* state) {
-    ruga_state *next, old;
+    ruga_state* next;
     RUGA_TRY(ruga_state_make(state->whole, state->stage + 1, &next));
     ruga_stage_carry(state, next);
-    ruga_state_show(next);
-    old = *state;
-    *state = *next;
-    *next = old;
-    ruga_state_destroy(&next);
+    become(state, next);
     return RUGA_OK;
 }
 
 static ruga_status go_to_stage(ruga_state* state, int stage) {
     if (stage < state->stage) {
-        ruga_state *first, old;
+        ruga_state* first;
         RUGA_TRY(ruga_state_make(state->whole, 0, &first));
-        old = *state;
-        *state = *first;
-        *first = old;
-        ruga_state_destroy(&first);
+        become(state, first);
     }
     while (state->stage < stage) {
         RUGA_TRY(ruga_state_enter_next_stage(state));
