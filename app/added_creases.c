@@ -11,6 +11,7 @@
 #include "crease/nest.h"
 #include "io/result_layout.h"
 #include "solver/stages.h"
+#include "solver/state.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -138,9 +139,23 @@ static bool are_same(const ruga_model* one, const ruga_model* other) {
            memcmp(a->triangle, b->triangle, 3 * (size_t)a->triangle_count * sizeof *a->triangle) == 0;
 }
 
+// Whether the file is what this version makes of its scene.
+static bool is_ours(const adding* a) {
+    const ruga_result_header* header = ruga_result_reader_header(a->reader);
+    int segments = header->creases ? header->creases->segment_count : 0;
+    return header->mesh->vertex_count == ruga_model_vertex_count(a->old) &&
+           segments == (a->old->creases ? a->old->creases->segment_count : 0) &&
+           header->restart_doubles == ruga_state_restart_size(a->old) &&
+           header->restart_doubles <= a->header->restart_doubles;
+}
+
 static ruga_status compare(adding* a, int last) {
     RUGA_TRY(check_times(a, last));
     RUGA_TRY(ruga_scene_place_error(a->before, ruga_model_create(&a->before->def, &a->old)));
+    if (!is_ours(a)) {
+        return ruga_fail(RUGA_BAD_INPUT,
+                         "%s is of another version of Ruga: make all frames anew with --force", a->path);
+    }
     if (!are_same(ruga_stage_model(a->old, ruga_stage_of_frame(a->old, last)),
                   ruga_stage_model(a->model, ruga_stage_of_frame(a->model, last)))) {
         return fail_mesh(a);
