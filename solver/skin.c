@@ -543,7 +543,7 @@ static ruga_status factorize(ruga_skin* skin, double shift, bool in_single) {
     return RUGA_OK;
 }
 
-ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
+static ruga_status assemble_stiffness(ruga_skin* skin, const double* x, double clamp) {
     double begin = ruga_clock();
     const ruga_model* model = skin->model;
     const ruga_sparse* pattern = ruga_shell_pattern(skin->shell);
@@ -563,10 +563,15 @@ ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
     for (int j = 0; j < skin->n && skin->proximal > 0; j++) {
         skin->stiffness[pattern->start[j]] += skin->proximal * model->vertex_area[j / 3];
     }
-    if (model->solves_skin) {
+    skin->work.seconds_assembly += ruga_clock() - begin;
+    return RUGA_OK;
+}
+
+ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
+    RUGA_TRY(assemble_stiffness(skin, x, clamp));
+    if (skin->model->solves_skin) {
         fill_kkt(skin, 0);
     }
-    skin->work.seconds_assembly += ruga_clock() - begin;
     return RUGA_OK;
 }
 
@@ -585,7 +590,7 @@ static ruga_status factorize_surely(ruga_skin* skin, double shift) {
 }
 
 ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift) {
-    RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
+    RUGA_TRY(assemble_stiffness(skin, x, clamp));
     RUGA_TRY(factorize_surely(skin, shift));
     skin->factor_exact = clamp == 0 && shift == 0;
     return RUGA_OK;
@@ -598,7 +603,7 @@ ruga_status ruga_skin_refactor(ruga_skin* skin, double shift) {
 
 // Without a shift and a proof: an initial inverse.
 static ruga_status factor_single(ruga_skin* skin, const double* x, double clamp) {
-    RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
+    RUGA_TRY(assemble_stiffness(skin, x, clamp));
     RUGA_TRY(factorize(skin, 0, true));
     skin->single_serves = skin->single_serves && skin->info.zero == 0;
     skin->factor_exact = false;
