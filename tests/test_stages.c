@@ -314,7 +314,8 @@ static void before_it_comes_there_is_no_crease(void** state) {
         scene with, without;
         make(which, 3, never, &with);
         with.s.def.solver.tolerance = which < QUASISTATIC ? 1e-9 : 1e-7;
-        with.s.handle[1].translate[0] *= 0.4; // below the critical strain: a wrinkle's sign is one of two
+        with.s.handle[1].translate[2] = 0.01 * with.s.length; // lifted: pressed, it has several equilibria
+        with.s.handle[1].translate[0] = 0;
         scene_build(&with.s);
         const ruga_mesh* sheet = with.s.model->stage[0].model->sheet;
         assert_int_equal(with.s.model->stage_count, 1);
@@ -322,7 +323,7 @@ static void before_it_comes_there_is_no_crease(void** state) {
         without.s.def.mesh = ruga_mesh_as_def(sheet);
         // The unit of damping hangs on the mean edge of the mesh that was given.
         without.s.def.skin.relaxation *= pow(ruga_mesh_mean_edge(sheet) / with.s.model->mean_edge, 4);
-        without.s.handle[1].translate[0] *= 0.4;
+        memcpy(without.s.handle[1].translate, with.s.handle[1].translate, sizeof with.s.handle[1].translate);
         without.s.def.solver.tolerance = with.s.def.solver.tolerance;
         scene_build(&without.s);
         step(&with, 3);
@@ -334,7 +335,7 @@ static void before_it_comes_there_is_no_crease(void** state) {
             moved = fmax(moved, fabs(x - sheet->position[i]));
         }
         print_message("kind %d: off by %.2g of %.2g m\n", which, off, moved);
-        assert_true(off <= (which <= SPRINGS ? 0 : 1e-6 * moved));
+        assert_true(off <= moved * (which <= SPRINGS ? 0 : which < QUASISTATIC ? 1e-6 : 1e-3));
         assert_true(moved > 1e-5);
         scene_free(&with.s);
         scene_free(&without.s);
