@@ -215,13 +215,6 @@ void ruga_elastic_set_rest(ruga_elastic* e, const double* rest) {
     ruga_cloth_set_rest(&e->cloth, e->rest);
 }
 
-void ruga_elastic_set_stiffness(ruga_elastic* e, const double* stiffness) {
-    for (int h = 0; h < e->hinge_count; h++) {
-        double own = stiffness[e->segment[h]] * e->hinge[h].length;
-        e->stiffness[h] = e->hinge[h].curve >= 0 ? own : e->stiffness[h];
-    }
-}
-
 void ruga_elastic_start(ruga_elastic* e, const double* x) {
     for (int h = 0; h < e->hinge_count; h++) {
         e->angle[e->segment[h]] = ruga_hinge_measure(&e->hinge[h], x, NULL, NULL);
