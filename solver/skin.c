@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-RUGA_WIDE double ruga_dot_product(int n, const double* a, const double* b) {
+RUGA_WIDE static double dot_product(int n, const double* a, const double* b) {
     // Sixteen sums let the compiler use vector registers and hide their latency; their order is fixed.
     enum { SUMS = 16 };
     double s[SUMS] = {0};
@@ -33,6 +33,10 @@ RUGA_WIDE double ruga_dot_product(int n, const double* a, const double* b) {
         }
     }
     return s[0];
+}
+
+double ruga_dot_product(int n, const double* a, const double* b) {
+    return dot_product(n, a, b);
 }
 
 double ruga_largest_move(int n, const double* d) {
