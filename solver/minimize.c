@@ -28,6 +28,22 @@ ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d) {
     return RUGA_OK;
 }
 
+// A mode without stiffness, as of a crease that turns freely, has the curvature that round-off leaves, of either sign. A
+// shift of 1e-12 of the stiffest vertex's takes it away: what is convex then is as much of a minimum as double can tell.
+// The factor is that of a shifted matrix, so it is not kept.
+static ruga_status convex_to_round_off(ruga_skin* skin, bool* convex) {
+    double most = 0;
+    const ruga_sparse* pattern = ruga_shell_pattern(skin->shell);
+    for (int j = 0; j < skin->n; j++) {
+        double area = skin->model->vertex_area[j / 3];
+        most = area > 0 ? fmax(most, skin->stiffness[pattern->start[j]] / area) : most;
+    }
+    RUGA_TRY(ruga_skin_refactor(skin, 1e-12 * most));
+    *convex = skin->factor_right;
+    skin->factor_right = false;
+    return RUGA_OK;
+}
+
 ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double tolerance, double* target,
                               double* gradient, ruga_skin_result* result, bool* done) {
     *done = true;
@@ -41,7 +57,12 @@ ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double t
         result->outcome = RUGA_OUTCOME_MINIMUM;
         return RUGA_OK;
     }
-    bool moved;
+    bool convex, moved;
+    RUGA_TRY(convex_to_round_off(skin, &convex));
+    if (convex) {
+        result->outcome = RUGA_OUTCOME_MINIMUM;
+        return RUGA_OK;
+    }
     RUGA_TRY(ruga_negative_curvature_step(skin, x, &result->terms, gradient, &moved));
     if (!moved && *target <= 2e-3 * tolerance) {
         result->outcome = RUGA_OUTCOME_SADDLE;

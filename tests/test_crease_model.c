@@ -290,6 +290,28 @@ static void check_laid(const small_scene* s) {
 }
 
 // Half a fold is at rest, and then goes on to its whole; without stiffness it stays.
+// A free crease leaves one mode without stiffness, whose curvature is round-off.
+static void a_free_crease_rests_wherever_it_is(void** state) {
+    (void)state;
+    for (int k = 0; k < 24; k++) {
+        small_scene s;
+        ruga_report report;
+        double range[2], fold = 0.1 + 0.035 * k;
+        ruga_crease_def crease = crease_line(across, 0);
+        crease.rest = -140 * DEGREE;
+        make_paper(&s, 1, &crease);
+        s.def.skin.young *= 1 + 0.37 * k;
+        s.def.start.fold = fold;
+        scene_build(&s);
+        assert_ok(ruga_state_step(s.model, s.state, &report));
+        assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+        angle_range(&s, range);
+        assert_near(range[0], fold * -140 * DEGREE, 1e-6);
+        assert_near(range[1], fold * -140 * DEGREE, 1e-6);
+        scene_free(&s);
+    }
+}
+
 static void a_sheet_may_start_folded(void** state) {
     (void)state;
     for (int stiff = 0; stiff < 2; stiff++) {
@@ -308,8 +330,7 @@ static void a_sheet_may_start_folded(void** state) {
         assert_near(range[1], -70 * DEGREE, 1e-12);
         check_laid(&s);
         assert_ok(ruga_state_step(s.model, s.state, &report));
-        // A free crease leaves one mode without stiffness, and round-off decides whether it counts as negative.
-        assert_true(report.outcome == RUGA_OUTCOME_MINIMUM || (!stiff && report.residual_shell <= 1e-5));
+        assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
         angle_range(&s, range);
         assert_near(range[0], (stiff ? -140 : -70) * DEGREE, 1e-6);
         assert_near(range[1], (stiff ? -140 : -70) * DEGREE, 1e-6);
@@ -441,7 +462,8 @@ static void check_flap(ruga_method method, double young) {
     angle_range(&s, range);
     print_message("flap of %g Pa: %.4f to %.4f degrees, rigid %.4f; %d iterations\n", young,
                   range[0] / DEGREE, range[1] / DEGREE, -theta / DEGREE, report.newton_iterations);
-    assert_true(report.newton_iterations < (method == RUGA_METHOD_NEWTON ? 60 : 400));
+    // Quasi-newton takes 260 to 750, by the kernels of the BLAS.
+    assert_true(report.newton_iterations < (method == RUGA_METHOD_NEWTON ? 60 : 1500));
     assert_near(range[0], -theta, 0.2 * DEGREE);
     assert_near(range[1], -theta, 0.2 * DEGREE);
     assert_ok(ruga_state_handle_forces(s.state, force));
@@ -728,6 +750,7 @@ int main(void) {
         cmocka_unit_test(a_cut_changes_neither_mass_nor_loads_nor_stiffness),
         cmocka_unit_test(a_skin_that_varies_may_be_creased),
         cmocka_unit_test(keyframes_fold_to_their_angle),
+        cmocka_unit_test(a_free_crease_rests_wherever_it_is),
         cmocka_unit_test(a_sheet_may_start_folded),
         cmocka_unit_test(angles_are_followed_through_180_degrees),
         cmocka_unit_test(values_vary_along_a_crease),
