@@ -103,6 +103,11 @@ ruga_status ruga_factor_numeric_single(ruga_factor* factor, const double* values
     return numeric(factor, values, true, info);
 }
 
+ruga_status ruga_factor_prove_inertia(ruga_factor* factor, bool* proven) {
+    *proven = true;
+    return factor->ldl ? ruga_ldl_prove_inertia(factor->ldl, proven) : RUGA_OK;
+}
+
 ruga_status ruga_factor_solve(ruga_factor* factor, const double* b, double* x) {
     if (factor->pattern.columns == 0) {
         return RUGA_OK;

@@ -243,7 +243,7 @@ static ruga_status factor_top(ruga_ldl* f) {
 }
 
 // What each task needs where no pivot is delayed: then nothing is allocated after the first factorisation,
-// and in the first one nothing is moved.
+// and in the first one nothing is moved. The stacks are made for the precision of the work (make_stacks).
 static ruga_status plan_tasks(ruga_ldl* f) {
     const ruga_ldl_symbolic* s = &f->symbolic;
     for (int k = 0; k < s->count; k++) {
@@ -267,7 +267,15 @@ static ruga_status plan_tasks(ruga_ldl* f) {
         RUGA_TRY(ruga_ldl_make_room(&m->factor, &m->factor_capacity, m->factor_used,
                                     f->single ? sizeof(float) : sizeof(double)));
         RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used, sizeof(int)));
-        RUGA_TRY(ruga_ldl_make_room(&m->stack, &m->stack_capacity, m->stack_peak * sizeof(double), 1));
+    }
+    return RUGA_OK;
+}
+
+static ruga_status make_stacks(ruga_ldl* f) {
+    size_t size = f->in_single ? sizeof(float) : sizeof(double);
+    for (int t = 0; t <= f->symbolic.task_count; t++) {
+        task_memory* m = &f->memory[t];
+        RUGA_TRY(ruga_ldl_make_room(&m->stack, &m->stack_capacity, m->stack_peak * size, 1));
     }
     return RUGA_OK;
 }
@@ -313,6 +321,7 @@ ruga_status ruga_ldl_numeric(ruga_ldl* f, const double* values, bool in_single, 
         RUGA_TRY(plan_tasks(f));
         f->planned = true;
     }
+    RUGA_TRY(make_stacks(f));
     start_tasks(f);
     ruga_parallel_for(f->symbolic.task_count, 1, factor_tasks, f);
     for (int t = 0; t < f->symbolic.task_count; t++) {

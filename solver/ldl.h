@@ -134,6 +134,7 @@ void ruga_ldl_destroy(ruga_ldl** ldl);
 ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, size_t size);
 // `in_single`: the work is done in single precision, where L is stored so.
 ruga_status ruga_ldl_numeric(ruga_ldl* ldl, const double* values, bool in_single, ruga_factor_info* info);
+ruga_status ruga_ldl_prove_inertia(ruga_ldl* ldl, bool* proven);
 ruga_status ruga_ldl_solve(ruga_ldl* ldl, const double* b, double* x);
 ruga_status ruga_ldl_solve_absolute(ruga_ldl* ldl, const double* b, double* x);
 ruga_status ruga_ldl_solve_rough(ruga_ldl* ldl, const double* b, double* x);

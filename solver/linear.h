@@ -38,12 +38,17 @@ void ruga_factor_destroy(ruga_factor** factor);
 
 // Numeric factorisation of the matrix with `values` in the analysed pattern. A matrix that is not positive
 // definite is not an error: see info. Values that are not finite are. Nothing is allocated from the second
-// call on, unless more pivots must be delayed to parent fronts than ever before. Uses ruga_threads() threads.
+// call on, unless more pivots must be delayed to parent fronts than ever before, or it is the first one in double.
+// Uses ruga_threads() threads.
 ruga_status ruga_factor_numeric(ruga_factor* factor, const double* values, ruga_factor_info* info);
 
 // LDL_SINGLE only: made in single precision throughout, in half of the time. The inertia is that of a matrix
-// which is that near, so it certifies nothing.
+// which is that near.
 ruga_status ruga_factor_numeric_single(ruga_factor* factor, const double* values, ruga_factor_info* info);
+
+// Whether the inertia of the factor is that of the matrix and not just of one nearby. Made in double: true, as far as
+// double goes. Made in single: see ruga_ldl_prove_inertia; it costs two to four rough solves.
+ruga_status ruga_factor_prove_inertia(ruga_factor* factor, bool* proven);
 
 // x = A^-1 b; b and x [n], may be the same. Only after a numeric factorisation with success (LDL: always;
 // where pivots are zero, b must be consistent). Refined where the residual is above 1e-12 |b| and round-off

@@ -59,7 +59,7 @@ ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double t
 ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                ruga_skin_result* result) {
     *result = (ruga_skin_result){.outcome = RUGA_OUTCOME_NOT_CONVERGED};
-    skin->single_serves = true;
+    skin->single_serves = skin->single_proves = true;
     switch (skin->model->solver.method) {
     case RUGA_METHOD_PAPER:
         return ruga_paper_minimize(skin, x, tolerance, result);

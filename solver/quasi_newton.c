@@ -6,19 +6,27 @@
 // indefinite while wrinkles move); the last certified exact factor starts the next frame. A KKT solve returns steps
 // with H d = 0, so every iterate stays feasible. facts: a wrinkled valley is curved on the scale of the thickness,
 // so any quadratic model serves for about 0.2 h only; cheap steps with a fresh enough factor win over Newton's.
+#include "core/wide.h"
 #include "solver/skin.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { PAIRS = 8, REFRESH = 24, MAX_ITERATIONS = 3000 };
-enum { GRADIENT, PROJECTED, DIRECTION, OLD_GRADIENT, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
+enum { GRADIENT, PROJECTED, DIRECTION, OLD_PROJECTED, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
 
 typedef struct memory {
     int count, newest; // pairs kept, slot of the newest
     double rho[PAIRS]; // 1 / s.y
-    double gamma;      // scale of the initial inverse
+    double step;       // last taken, in directions: 0 = none, or the energy could not be lowered
 } memory;
+
+// y += a x
+RUGA_WIDE static void add_scaled(int n, double a, const double* restrict x, double* restrict y) {
+    for (int i = 0; i < n; i++) {
+        y[i] += a * x[i];
+    }
+}
 
 static int slot_of(const memory* m, int age) {
     return (m->newest - age + 2 * PAIRS) % PAIRS;
@@ -32,21 +40,14 @@ static ruga_status lbfgs_direction(ruga_skin* skin, const memory* m, const doubl
         int k = slot_of(m, age);
         const double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
         a[k] = m->rho[k] * ruga_dot_product(skin->n, s, q);
-        for (int i = 0; i < skin->n; i++) {
-            q[i] -= a[k] * y[i];
-        }
+        add_scaled(skin->n, -a[k], y, q);
     }
     RUGA_TRY(ruga_skin_solve_rough(skin, q, d));
-    for (int i = 0; i < skin->n; i++) {
-        d[i] *= m->gamma;
-    }
     for (int age = m->count - 1; age >= 0; age--) {
         int k = slot_of(m, age);
         const double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
         double b = m->rho[k] * ruga_dot_product(skin->n, y, d);
-        for (int i = 0; i < skin->n; i++) {
-            d[i] += s[i] * (a[k] - b);
-        }
+        add_scaled(skin->n, a[k] - b, s, d);
     }
     for (int i = 0; i < skin->n; i++) {
         d[i] = -d[i];
@@ -54,51 +55,42 @@ static ruga_status lbfgs_direction(ruga_skin* skin, const memory* m, const doubl
     return RUGA_OK;
 }
 
-// Keeps the pair of the step just made where its curvature is positive, and rescales the initial inverse by the
-// ratio of the factor's curvature to the true one along it.
-static void remember(ruga_skin* skin, memory* m, const double* x, const double* gradient, double slope,
-                     double step) {
+// Keeps the pair of the step just made where its curvature is positive. Differences of projected gradients are as good
+// as those of gradients, since all steps are in the null space, and need no projection before a solve.
+static void remember(ruga_skin* skin, memory* m, const double* x, const double* projected) {
     int k = (m->newest + 1) % PAIRS;
     double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
-    const double *old_x = ruga_skin_vector(skin, OLD_POSITION), *old_g = ruga_skin_vector(skin, OLD_GRADIENT);
+    const double *old_x = ruga_skin_vector(skin, OLD_POSITION), *old_p = ruga_skin_vector(skin, OLD_PROJECTED);
     for (int i = 0; i < skin->n; i++) {
         s[i] = x[i] - old_x[i];
-        y[i] = skin->model->skin_handle[i] >= 0 ? 0 : gradient[i] - old_g[i];
+        y[i] = projected[i] - old_p[i];
     }
     double sy = ruga_dot_product(skin->n, s, y);
-    if (!(sy > 1e-6 * step * step * fabs(slope))) {
+    if (!(sy > 1e-6 * m->step * fabs(ruga_dot_product(skin->n, s, old_p)))) {
         return;
     }
-    double* image = ruga_skin_vector(skin, WORK);
-    ruga_skin_multiply(skin, s, image);
-    m->gamma = fmin(fmax(ruga_dot_product(skin->n, s, image) / sy, 0.05), 1);
     m->rho[k] = 1 / sy;
     m->newest = k;
     m->count = m->count < PAIRS ? m->count + 1 : PAIRS;
 }
 
-// One direction and line search. *step = 0 where the energy could not be lowered; *move is the direction's length.
+// One direction and line search; *move is the direction's length.
 static ruga_status iterate(ruga_skin* skin, memory* m, double* x, double* gradient, const double* projected,
-                           ruga_skin_terms* terms, double* step, double* move) {
+                           ruga_skin_terms* terms, double* move) {
     double* d = ruga_skin_vector(skin, DIRECTION);
     RUGA_TRY(lbfgs_direction(skin, m, projected, d));
     *move = ruga_largest_move(skin->n, d);
     RUGA_TRY(ruga_skin_clean_direction(skin, d));
     memcpy(ruga_skin_vector(skin, OLD_POSITION), x, (size_t)skin->n * sizeof *x);
-    memcpy(ruga_skin_vector(skin, OLD_GRADIENT), gradient, (size_t)skin->n * sizeof *gradient);
-    double slope = ruga_dot_product(skin->n, gradient, d);
-    RUGA_TRY(ruga_armijo_search(skin, d, x, terms, gradient, step));
-    if (*step > 0) {
-        remember(skin, m, x, gradient, slope, *step);
-    }
-    return RUGA_OK;
+    memcpy(ruga_skin_vector(skin, OLD_PROJECTED), projected, (size_t)skin->n * sizeof *projected);
+    return ruga_armijo_search(skin, d, x, terms, gradient, &m->step);
 }
 
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result) {
     double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
-    memory m = {.gamma = 1, .newest = -1};
-    double score = 0, step, move;
+    memory m = {.newest = -1};
+    double score = 0, move;
     int failures = 0;
     double target = tolerance;
     result->outcome = RUGA_OUTCOME_NOT_CONVERGED;
@@ -109,6 +101,9 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
     for (int k = 0; k < MAX_ITERATIONS; k++, skin->work.iterations++) {
         RUGA_TRY(ruga_skin_project(skin, gradient, projected));
         result->residual = ruga_skin_residual(skin, projected, &result->terms);
+        if (m.step > 0) {
+            remember(skin, &m, x, projected);
+        }
         if (result->residual <= target) {
             bool done;
             RUGA_TRY(ruga_skin_certify(skin, x, certify, tolerance, &target, gradient, result, &done));
@@ -119,15 +114,15 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
         }
         if (score >= REFRESH) {
             RUGA_TRY(ruga_skin_factor_convex(skin, x));
-            m = (memory){.gamma = 1, .newest = -1};
+            m = (memory){.newest = -1};
             score = 0;
             continue;
         }
-        RUGA_TRY(iterate(skin, &m, x, gradient, projected, &result->terms, &step, &move));
+        RUGA_TRY(iterate(skin, &m, x, gradient, projected, &result->terms, &move));
         // A first step that is far too long or hardly taken: the old factor is of no use here.
-        bool useless = score == 0 && (move > 2 * skin->model->skin.thickness || step < 0.2) && failures == 0;
-        score = useless || step == 0 ? REFRESH : score + 1 + (step < 0.35);
-        failures = step * move <= 0x1p-52 * skin->model->extent ? failures + 1 : 0;
+        bool useless = score == 0 && (move > 2 * skin->model->skin.thickness || m.step < 0.2) && failures == 0;
+        score = useless || m.step == 0 ? REFRESH : score + 1 + (m.step < 0.35);
+        failures = m.step * move <= 0x1p-52 * skin->model->extent ? failures + 1 : 0;
         skin->single_serves = skin->single_serves && failures == 0;
         if (failures > 3) {
             return RUGA_OK;

@@ -10,22 +10,29 @@
 #include "core/memory.h"
 #include "core/progress.h"
 #include "core/vec3.h"
+#include "core/wide.h"
 
 #include <string.h>
 
-double ruga_dot_product(int n, const double* a, const double* b) {
-    // Four sums let the compiler use vector registers; their order is fixed.
-    double s[4] = {0, 0, 0, 0};
+RUGA_WIDE double ruga_dot_product(int n, const double* a, const double* b) {
+    // Sixteen sums let the compiler use vector registers and hide their latency; their order is fixed.
+    enum { SUMS = 16 };
+    double s[SUMS] = {0};
     int i = 0;
-    for (; i + 4 <= n; i += 4) {
-        for (int k = 0; k < 4; k++) {
+    for (; i + SUMS <= n; i += SUMS) {
+        for (int k = 0; k < SUMS; k++) {
             s[k] += a[i + k] * b[i + k];
         }
     }
     for (; i < n; i++) {
         s[0] += a[i] * b[i];
     }
-    return (s[0] + s[1]) + (s[2] + s[3]);
+    for (int half = SUMS / 2; half > 0; half /= 2) {
+        for (int k = 0; k < half; k++) {
+            s[k] += s[k + half];
+        }
+    }
+    return s[0];
 }
 
 double ruga_largest_move(int n, const double* d) {
@@ -198,7 +205,7 @@ static ruga_status create_kkt(ruga_skin* skin, const transpose* t) {
     return RUGA_OK;
 }
 
-static ruga_status create_factor(ruga_skin* skin) {
+ruga_status ruga_skin_create_factor(const ruga_skin* skin, ruga_factor** factor) {
     ruga_status status = RUGA_OK;
     int threes = (skin->n + skin->m) / 3, nodes = threes + skin->size - 3 * threes, *start = NULL;
     bool* last = NULL;
@@ -211,8 +218,7 @@ static ruga_status create_factor(ruga_skin* skin) {
         last[i] = true;
     }
     // Without clusters CHOLMOD would do as well; the LDL^T takes half of its time (solver/README.md).
-    RUGA_TRY_DONE(ruga_factor_create(RUGA_FACTOR_LDL_SINGLE, &skin->kkt, nodes, start, skin->m ? last : NULL,
-                                     &skin->factor));
+    RUGA_TRY_DONE(ruga_factor_create(RUGA_FACTOR_LDL_SINGLE, &skin->kkt, nodes, start, skin->m ? last : NULL, factor));
 done:
     ruga_release(start);
     ruga_release(last);
@@ -357,7 +363,7 @@ ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** out) {
     if (model->solves_skin) {
         RUGA_TRY_DONE(find_void_rows(skin));
         RUGA_TRY_DONE(create_kkt(skin, &t));
-        RUGA_TRY_DONE(create_factor(skin));
+        RUGA_TRY_DONE(ruga_skin_create_factor(skin, &skin->factor));
         RUGA_TRY_DONE(create_grams(skin, &t));
     }
     if (model->foundation.vertex_count) {
@@ -528,6 +534,7 @@ static ruga_status factorize(ruga_skin* skin, double shift, bool in_single) {
     double filled = ruga_clock();
     RUGA_TRY(in_single ? ruga_factor_numeric_single(skin->factor, skin->kkt.value, &skin->info)
                        : ruga_factor_numeric(skin->factor, skin->kkt.value, &skin->info));
+    skin->in_single = in_single;
     skin->factor_right = skin->info.negative == skin->m && skin->info.zero == 0;
     skin->work.factorizations++;
     skin->work.failures += !skin->factor_right;
@@ -563,19 +570,33 @@ ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
     return RUGA_OK;
 }
 
+// In single precision where that proves the inertia, in half of the time, else in double.
+static ruga_status factorize_surely(ruga_skin* skin, double shift) {
+    if (skin->single_proves) {
+        RUGA_TRY(factorize(skin, shift, true));
+        double begin = ruga_clock();
+        skin->single_proves = skin->info.zero == 0;
+        if (skin->single_proves) {
+            RUGA_TRY(ruga_factor_prove_inertia(skin->factor, &skin->single_proves));
+        }
+        skin->work.seconds_factor += ruga_clock() - begin;
+    }
+    return skin->single_proves ? RUGA_OK : factorize(skin, shift, false);
+}
+
 ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift) {
     RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
-    RUGA_TRY(factorize(skin, shift, false));
+    RUGA_TRY(factorize_surely(skin, shift));
     skin->factor_exact = clamp == 0 && shift == 0;
     return RUGA_OK;
 }
 
 ruga_status ruga_skin_refactor(ruga_skin* skin, double shift) {
     skin->factor_exact = skin->factor_exact && shift == 0;
-    return factorize(skin, shift, false);
+    return factorize_surely(skin, shift);
 }
 
-// Without a shift and in single precision, in half of the time: an initial inverse, whose inertia certifies nothing.
+// Without a shift and a proof: an initial inverse.
 static ruga_status factor_single(ruga_skin* skin, const double* x, double clamp) {
     RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
     RUGA_TRY(factorize(skin, 0, true));
@@ -641,9 +662,8 @@ ruga_status ruga_skin_solve(ruga_skin* skin, const double* r, double* d) {
 }
 
 ruga_status ruga_skin_solve_rough(ruga_skin* skin, const double* r, double* d) {
-    RUGA_TRY(ruga_skin_project(skin, r, d));
     double begin = ruga_clock();
-    memcpy(skin->right, d, (size_t)skin->n * sizeof *d);
+    memcpy(skin->right, r, (size_t)skin->n * sizeof *r);
     memset(skin->right + skin->n, 0, (size_t)skin->m * sizeof *skin->right);
     RUGA_TRY(ruga_factor_solve_rough(skin->factor, skin->right, skin->left));
     skin->work.seconds_solve += ruga_clock() - begin;

@@ -37,8 +37,10 @@ typedef struct ruga_skin {
     bool* row_void;         // [m] rows of H that are left out: what they average is held
     bool near_dependent;    // the other rows are dependent on one another, or nearly
     bool factor_right;      // the factor's inertia is that of a minimum
-    bool factor_exact;      // made from the exact Hessian without a shift, in double, at the state last given
-    bool single_serves;     // no factor of this solve was beyond single precision
+    bool factor_exact;      // made from the exact Hessian without a shift at the state last given, its inertia proven
+    bool in_single;         // the factor was made in single precision
+    bool single_serves;     // no clamped factor of this solve was beyond single precision
+    bool single_proves;     // nor was the inertia of any other
     ruga_factor* gram[3];   // H H^T over the free components; [1] and [2] NULL where they equal [0]
     double shift_memory;    // last diagonal shift that gave the right inertia, N/m^3
 
@@ -64,6 +66,9 @@ typedef struct ruga_skin {
 ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** skin);
 void ruga_skin_destroy(ruga_skin** skin);
 
+// Another factor of the same pattern, analysed.
+ruga_status ruga_skin_create_factor(const ruga_skin* skin, ruga_factor** factor);
+
 // Energy at x; the full gradient [n] where not NULL (held components are not zeroed).
 ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* terms, double* gradient);
 
@@ -74,7 +79,8 @@ ruga_status ruga_skin_handle_forces(ruga_skin* skin, const double* x, double* fo
 
 // Assembles K at x (clamp as in shell.h) into stiffness and kkt; the factor stays as it is.
 ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp);
-// Assembles, adds shift times vertex area to the diagonal, and factorises. See factor_right.
+// Assembles, adds shift times vertex area to the diagonal, and factorises, in single precision while that proves the
+// inertia. See factor_right.
 ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift);
 ruga_status ruga_skin_refactor(ruga_skin* skin, double shift); // the same K with another shift
 // Tries clamp 0.5, then 1, in single precision while that serves, then in double, then shifts: the inertia is right.
@@ -85,7 +91,8 @@ ruga_status ruga_skin_shift_until_right(ruga_skin* skin);
 
 // d = the first n of [K H^T; H 0]^-1 [r; 0], with held components of r taken as 0: H d = 0.
 ruga_status ruga_skin_solve(ruga_skin* skin, const double* r, double* d);
-// Near that, as the factor in single precision stands, between two projections: symmetric, and H d = 0 to round-off.
+// Near that, as the factor in single precision stands, then projected: symmetric for r that are projected, H d = 0 to
+// round-off.
 ruga_status ruga_skin_solve_rough(ruga_skin* skin, const double* r, double* d);
 // The full system: sides [size], right with 0 for the directors.
 ruga_status ruga_skin_solve_system(ruga_skin* skin, const double* right, double* left);

@@ -191,7 +191,8 @@ void ruga_state_save(const ruga_state* state, double* restart) {
     *restart++ = state->time;
     *restart++ = state->skin->shift_memory;
     *restart++ = state->skin->proximal;
-    *restart++ = state->skin->factor_exact && state->skin->factor_right;
+    bool kept = state->skin->factor_exact && state->skin->factor_right;
+    *restart++ = kept ? 1 + state->skin->in_single : 0;
     memcpy(restart, state->x, n * sizeof *restart);
     memcpy(restart + n, state->q, nodes * sizeof *restart);
     memcpy(restart + n + nodes, state->v, nodes * sizeof *restart);
@@ -215,6 +216,7 @@ ruga_status ruga_state_load(ruga_state* state, const double* restart) {
     state->skin->shift_memory = restart[2];
     state->skin->proximal = restart[3];
     bool kept = restart[4] > 0;
+    state->skin->single_proves = restart[4] > 1; // as then
     restart += RESTART_SCALARS;
     memcpy(state->x, restart, n * sizeof *restart);
     memcpy(state->q, restart + n, nodes * sizeof *restart);

@@ -547,6 +547,42 @@ static void what_single_precision_cannot_tell_is_said(void** state) {
     system_clear(&s);
 }
 
+// The same closer and closer to being singular, from both sides: single precision proves the inertia while it can, and
+// never a wrong one.
+static void an_inertia_is_proven_only_where_it_is_right(void** state) {
+    (void)state;
+    linear_system s;
+    ruga_factor_info info, in_double;
+    bool proven;
+    int proofs = 0, wrong = 0;
+    laplacian(&s, 20);
+    ruga_factor* f = factor_of(&s, RUGA_FACTOR_LDL_SINGLE, &info);
+    double* diagonal = random_vector(s.a.columns, 1);
+    for (int j = 0; j < s.a.columns; j++) {
+        diagonal[j] = s.a.value[s.a.start[j]];
+    }
+    for (int k = 0; k < 48; k++) {
+        double least = (k % 2 ? -1 : 1) * pow(10, -1 - k / 4.0);
+        for (int j = 0; j < s.a.columns; j++) {
+            s.a.value[s.a.start[j]] = diagonal[j] - 0.1 + least;
+        }
+        assert_ok(ruga_factor_numeric(f, s.a.value, &in_double));
+        assert_ok(ruga_factor_prove_inertia(f, &proven));
+        assert_true(proven);
+        assert_ok(ruga_factor_numeric_single(f, s.a.value, &info));
+        assert_ok(ruga_factor_prove_inertia(f, &proven));
+        assert_true(!proven || (info.negative == in_double.negative && info.zero == 0));
+        assert_true(proven || fabs(least) < 1e-4);
+        proofs += proven;
+        wrong += info.negative != in_double.negative;
+    }
+    print_message("%d of 48 proven, %d wrong in single precision\n", proofs, wrong);
+    assert_true(wrong > 0);
+    ruga_release(diagonal);
+    ruga_factor_destroy(&f);
+    system_clear(&s);
+}
+
 static void rough_solve_is_symmetric_and_near_the_solution(void** state) {
     (void)state;
     linear_system s;
@@ -689,6 +725,7 @@ int main(void) {
         cmocka_unit_test(dense_front_is_solved_with_the_inertia_of_its_eigenvalues),
         cmocka_unit_test(factors_in_single_precision_are_refined_to_round_off),
         cmocka_unit_test(what_single_precision_cannot_tell_is_said),
+        cmocka_unit_test(an_inertia_is_proven_only_where_it_is_right),
         cmocka_unit_test(rough_solve_is_symmetric_and_near_the_solution),
         cmocka_unit_test(tiny_and_odd_patterns_are_solved),
         cmocka_unit_test(values_that_are_not_finite_are_refused),
