@@ -169,8 +169,14 @@ static void say_creases(const ruga_arguments* arguments, const facts* f) {
     ruga_say(arguments, "    %-28s %d, %d redundant ones left out\n", "rows of the sewing",
              c->sewing.row_count, c->sewing.redundant_rows);
     for (int i = 0; i < r->curve_count && i < LISTED; i++) {
-        ruga_say(arguments, "    %-28s %.4g mm, freedom %s\n", c->law[r->curve[i].label].name,
-                 1e3 * r->facts[i].length, freedom_of(r, i));
+        char later[40] = "";
+        int stage = r->curve[i].stage;
+        if (stage > 0) {
+            (void)snprintf(later, sizeof later, ", from %.4g s on",
+                           f->model->stage[stage - 1].end * f->model->step);
+        }
+        ruga_say(arguments, "    %-28s %.4g mm, freedom %s%s\n", c->law[r->curve[i].label].name,
+                 1e3 * r->facts[i].length, freedom_of(r, i), later);
     }
     if (r->curve_count > LISTED) {
         ruga_say(arguments, "    and %d more\n", r->curve_count - LISTED);

@@ -3,6 +3,7 @@
 //
 // ruga run: a scene to a result file. Whole frames only reach the file, so that a run that was stopped or
 // killed is continued by --resume, with the same bits as one left alone.
+#include "app/added_creases.h"
 #include "app/command.h"
 #include "app/console.h"
 #include "app/creases.h"
@@ -39,7 +40,8 @@ enum { FRAMES_MAX = 10000000, THREADS_MAX = 1024, OUTCOMES = 4 };
 typedef struct job {
     const ruga_arguments* arguments;
     const char *scene_path, *path;
-    ruga_scene scene;
+    ruga_scene scene, before; // before: that of RESULT, where creases were added to it
+    bool adds;
     ruga_model* model;
     ruga_state* state;
     ruga_result* result;
@@ -112,7 +114,10 @@ static ruga_status look_at_result(job* j) {
     }
     RUGA_TRY(ruga_result_open(j->path, &reader));
     const ruga_result_header* header = ruga_result_reader_header(reader);
-    if (header->scene_hash != j->scene.hash || header->mesh_hash != j->scene.mesh_hash) {
+    if (header->scene_hash != j->scene.hash && header->mesh_hash == j->scene.mesh_hash) {
+        RUGA_TRY_DONE(ruga_added_creases_find(header, j->scene_path, &j->scene, &j->before, &j->adds));
+    }
+    if (!j->adds && (header->scene_hash != j->scene.hash || header->mesh_hash != j->scene.mesh_hash)) {
         status = ruga_fail(RUGA_BAD_INPUT, "%s was made from another %s: --force overwrites it", j->path,
                            header->mesh_hash != j->scene.mesh_hash ? "mesh" : "scene");
         goto done;
@@ -222,6 +227,9 @@ static ruga_status open_result(job* j) {
         return ruga_result_create(j->path, &header, force, &j->result);
     }
     int frames;
+    if (j->adds) {
+        RUGA_TRY(ruga_added_creases_write(j->path, &j->before, &j->scene, model, &header));
+    }
     RUGA_TRY(ruga_result_resume(j->path, &header, j->restart, &frames, &j->result));
     j->whole = frames - 1;
     return ruga_state_load(j->state, j->restart);
@@ -377,6 +385,7 @@ static void clear(job* j) {
     ruga_state_destroy(&j->state);
     ruga_model_destroy(&j->model);
     ruga_scene_clear(&j->scene);
+    ruga_scene_clear(&j->before);
 }
 
 static ruga_status run(const ruga_arguments* arguments, int* exit_status) {
@@ -417,7 +426,8 @@ const ruga_command ruga_run_command = {
         "Writes frame 0, the start state, and then as many frames as the scene or --frames says. The file "
         "can be\n"
         "read at any moment. Ctrl-C ends at the last whole frame; the same command with --resume goes on\n"
-        "from there and gives the same bits. Exit status 1 where a frame is a saddle or not converged.",
+        "from there and gives the same bits. Creases that start at the last frame or later may be added at the\n"
+        "end of the scene's list first. Exit status 1 where a frame is a saddle or not converged.",
     .example = "    ruga run pillow.yaml -o pillow.h5 --frames 20 --set \"skin.thickness=1 mm\"",
     .options = options,
     .run = run,

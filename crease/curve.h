@@ -15,6 +15,7 @@ typedef struct ruga_curve {
     bool varies; // its angle is to vary along its length
     bool closed; // the last point is joined to the first
     int label;   // the caller's own number; it is carried along
+    int stage;   // when it comes: a raster of an earlier stage is drawn for it, too, but has it not yet
     int point_count;
     double (*point)[3]; // [point_count] m
     int* vertex;        // [point_count] mesh vertex that the point is, -1 = none
@@ -27,7 +28,7 @@ typedef struct ruga_curves {
 
 void ruga_curves_clear(ruga_curves* curves);
 
-// The functions below append; `style` gives kind, freedom, varies, closed and label, its points are not
+// The functions below append; `style` gives kind, freedom, varies, closed, label and stage, its points are not
 // looked at.
 
 // A polyline in space. RUGA_BAD_INPUT where it has fewer than two points (closed: three), or one that is not

@@ -95,7 +95,8 @@ int ruga_cut_point(const ruga_cut* cut, const ruga_cut_piece* piece, int place, 
 // ------------------------------------------------------------------------------- 1: pieces
 
 static bool stays_open(const cutter* c, int own) {
-    return own >= 0 && c->raster->curve[c->raster->chord[own].curve].kind == RUGA_CREASE_CUT;
+    int curve = own >= 0 ? c->raster->chord[own].curve : -1;
+    return curve >= 0 && c->raster->curve[curve].kind == RUGA_CREASE_CUT;
 }
 
 static ruga_status split_triangle(cutter* c, int f) {
@@ -113,7 +114,7 @@ static ruga_status split_triangle(cutter* c, int f) {
                              "crease curve %d crosses another one within face %d near (%.6g, %.6g, %.6g)",
                              chord->curve, f, x[0], x[1], x[2]);
         }
-        full = full || r->facts[chord->curve].full;
+        full = full || chord->curve < 0 || r->facts[chord->curve].full;
     }
     if (full) {
         ruga_raster_places(r, f, position);

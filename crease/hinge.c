@@ -115,8 +115,8 @@ static void add_angle_hessian(const double point[4][3], double scale, double blo
     const double moment[3] = {scale, 0, 0};
     for (int side = 0; side < 2; side++) {
         const double* const x[3] = {point[corner[side][0]], point[corner[side][1]], point[corner[side][2]]};
-        double lower[RUGA_TRIANGLE_BLOCKS][9] = {{0}};
-        ruga_hinge_add_hessian(x, moment, lower);
+        double lower[RUGA_TRIANGLE_BLOCKS][9];
+        ruga_hinge_hessian(x, moment, lower);
         for (int b = 0; b < RUGA_TRIANGLE_BLOCKS; b++) {
             int i = corner[side][ruga_triangle_block_corner[b][0]];
             int j = corner[side][ruga_triangle_block_corner[b][1]];

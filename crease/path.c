@@ -216,22 +216,20 @@ static ruga_status draw(drawer* d, int index) {
     return RUGA_OK;
 }
 
-ruga_status ruga_paths_create(ruga_sheet* sheet, const ruga_curves* curves, bool snap, double corner,
-                              ruga_paths* paths) {
+ruga_status ruga_paths_add(ruga_sheet* sheet, const ruga_curves* curves, const int stages[2], bool snap,
+                           double corner, ruga_paths* paths) {
     ruga_status status = RUGA_OK;
-    *paths = (ruga_paths){0};
     drawer d = {.sheet = sheet, .curves = curves, .snap = snap, .corner = corner, .paths = paths};
     RUGA_TRY_DONE(ruga_cgal_locator_create(sheet->mesh.position, sheet->mesh.triangle_count,
                                            sheet->mesh.triangle, &d.locator));
     for (int c = 0; c < curves->count; c++) {
-        RUGA_TRY_DONE(draw(&d, c));
+        if (curves->curve[c].stage >= stages[0] && curves->curve[c].stage <= stages[1]) {
+            RUGA_TRY_DONE(draw(&d, c));
+        }
     }
 done:
     ruga_cgal_locator_destroy(&d.locator);
     ruga_release(d.place);
-    if (status != RUGA_OK) {
-        ruga_paths_clear(paths);
-    }
     return status;
 }
 
@@ -294,11 +292,12 @@ static void reverse(ruga_hits* hits, int begin, int first_face) {
     }
 }
 
+// At an end of the first piece: there may be no other.
 static ruga_status add_own_vertex(ruga_path* path, int station) {
     ruga_hits* hits = &path->hits;
     RUGA_TRY(RUGA_RESERVE(hits->hit, hits->capacity, (size_t)hits->count + 1));
     hits->hit[hits->count++] =
-        (ruga_hit){.vertex = path->station[station].place.vertex, .edge = -1, .face = -1, .stretch = station};
+        (ruga_hit){.vertex = path->station[station].place.vertex, .edge = -1, .face = -1, .stretch = 0};
     return RUGA_OK;
 }
 

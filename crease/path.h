@@ -29,11 +29,11 @@ typedef struct ruga_paths {
 
 void ruga_paths_clear(ruga_paths* paths);
 
-// Brings the curves to the sheet: points are projected to the nearest place of the surface, what hangs over
+// Brings the curves from one stage to another to the sheet, behind the paths that are there: points are projected to the nearest place of the surface, what hangs over
 // the boundary is marked as beyond it. Where `snap`, ends, corners and the vertices of mesh paths are wanted.
 // Vertices that curves name are pinned. RUGA_BAD_INPUT names a curve that lies beside the mesh.
-ruga_status ruga_paths_create(ruga_sheet* sheet, const ruga_curves* curves, bool snap, double corner,
-                              ruga_paths* paths);
+ruga_status ruga_paths_add(ruga_sheet* sheet, const ruga_curves* curves, const int stages[2], bool snap,
+                           double corner, ruga_paths* paths);
 // Finds all hits and removes those that are no crossings: an edge met twice in a row (a corner that pokes
 // into a triangle), an edge met beside its own vertex. A piece that leaves the mesh splits its path.
 // RUGA_BAD_INPUT names the curve and the place where no way leads over the surface.

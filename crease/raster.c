@@ -2,15 +2,19 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // Rasterisation of curves to a mesh (Patkar, Jin and Fedkiw 2015, section 3): mend.c makes rounds until the
-// curves fit; here their hits become chords. An end inside the mesh is, with snap, a vertex. Without it the
+// curves fit, here their hits become chords. An end inside the mesh is, with snap, a vertex. Without it the
 // part within the last triangle is dropped and, where the last hit is on an inner edge, the curve is led on
 // to the opposite vertex (figure 4): without that the two sides of the cut could not turn at all.
+//
+// Where curves of later stages can do with the mesh as it is mended for those before, it stays as it is: so
+// it is without them. Where they need a vertex it is mended for all at once, which makes better triangles.
 #include "crease/raster.h"
 
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "crease/mend.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -22,7 +26,8 @@ ruga_raster_def ruga_default_raster_def(void) {
                              .corner = 20 * RUGA_PI / 180,
                              .reach = 0.1,
                              .merge = 0.02,
-                             .rounds = 200};
+                             .rounds = 200,
+                             .stage = INT_MAX};
 }
 
 void ruga_raster_clear(ruga_raster* raster) {
@@ -36,6 +41,16 @@ void ruga_raster_clear(ruga_raster* raster) {
     ruga_release(raster->curve);
     ruga_release(raster->facts);
     *raster = (ruga_raster){0};
+}
+
+// The last stage up to `stage` at which there are curves.
+static int last_stage(const ruga_curves* curves, int stage) {
+    int last = 0;
+    for (int c = 0; c < curves->count; c++) {
+        int own = curves->curve[c].stage;
+        last = own > last && own <= stage ? own : last;
+    }
+    return last;
 }
 
 // ------------------------------------------------------------------------------- ends
@@ -245,7 +260,8 @@ static void decide_freedom(ruga_raster* r) {
     }
 }
 
-static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_curves* curves) {
+// Of the curves up to a stage.
+static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_curves* curves, int stage) {
     ruga_raster* r = b->raster;
     int vertices = r->mesh.vertex_count, edges = r->edges.edge_count;
     r->curve_count = curves->count;
@@ -269,9 +285,12 @@ static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_cu
         r->curve[c].vertex = NULL;
     }
     for (int pass = 0; pass < 2; pass++) { // cuts first: where a fold lies on one, it is cut
-        for (int p = 0; p < paths->count; p++) {
-            if ((r->curve[paths->path[p].curve].kind == RUGA_CREASE_CUT) == (pass == 0)) {
-                RUGA_TRY(add_path(b, &paths->path[p]));
+        for (int s = 0; s <= last_stage(curves, stage); s++) { // and then what came first
+            for (int p = 0; p < paths->count; p++) {
+                const ruga_curve* curve = &r->curve[paths->path[p].curve];
+                if ((curve->kind == RUGA_CREASE_CUT) == (pass == 0) && curve->stage == s) {
+                    RUGA_TRY(add_path(b, &paths->path[p]));
+                }
             }
         }
     }
@@ -279,51 +298,197 @@ static ruga_status build_chords(build* b, const ruga_paths* paths, const ruga_cu
     return sort_chords(r);
 }
 
-ruga_status ruga_raster_create(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
-                               ruga_raster* raster) {
+static void clear_build(build* b) {
+    ruga_release(b->first_curve);
+    ruga_release(b->links);
+    ruga_release(b->node_links);
+    ruga_release(b->node_curve);
+    ruga_release(b->head);
+    ruga_release(b->next);
+    *b = (build){0};
+}
+
+// ------------------------------------------------------------------------------- stages
+
+// The chord of triangle f between the places of `chord`, -1 = none.
+static int same_chord(const ruga_raster* r, int f, const ruga_chord* chord) {
+    for (int k = r->chord_start[f]; k < r->chord_start[f + 1]; k++) {
+        const int* end = r->chord[k].end;
+        if ((end[0] == chord->end[0] && end[1] == chord->end[1]) ||
+            (end[0] == chord->end[1] && end[1] == chord->end[0])) {
+            return k;
+        }
+    }
+    return -1;
+}
+
+static bool is_full(const ruga_raster* r, int f) {
+    for (int k = r->chord_start[f]; k < r->chord_start[f + 1]; k++) {
+        if (r->facts[r->chord[k].curve].full) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A stage of `whole`, which has all curves: freedom is that of the whole, and a triangle that auxiliary
+// chords divide is divided as there from the first, so that what is cut later lies within a piece of what is
+// cut now.
+static ruga_status take_stage(const ruga_raster* whole, ruga_raster* r) {
+    ruga_chord* chord = NULL;
+    int *start = NULL, count = 0;
+    memcpy(r->facts, whole->facts, (size_t)r->curve_count * sizeof *r->facts);
+    RUGA_TRY(RUGA_NEW(chord, whole->chord_count + r->chord_count));
+    ruga_status status = RUGA_NEW(start, (size_t)r->mesh.triangle_count + 1);
+    if (status != RUGA_OK) {
+        ruga_release(chord);
+        return status;
+    }
+    for (int f = 0; f < r->mesh.triangle_count; f++) {
+        const ruga_raster* from = is_full(r, f) ? whole : r;
+        start[f] = count;
+        for (int k = from->chord_start[f]; k < from->chord_start[f + 1]; k++) {
+            ruga_chord* to = &chord[count++];
+            int own = same_chord(r, f, &from->chord[k]);
+            *to = own >= 0 ? r->chord[own] : from->chord[k];
+            to->curve = own >= 0 ? to->curve : -1;
+            for (int end = 0; end < 2; end++) {
+                int e = r->edges.triangle_edge[f][to->end[end] / 2];
+                r->node[e] = to->end[end] % 2 ? whole->node[e] : r->node[e];
+            }
+        }
+    }
+    start[r->mesh.triangle_count] = count;
+    ruga_release(r->chord);
+    ruga_release(r->chord_start);
+    r->chord = chord;
+    r->chord_count = count;
+    r->chord_start = start;
+    return RUGA_OK;
+}
+
+typedef struct fitted {
+    ruga_sheet sheet;
+    ruga_paths paths;
+    ruga_mend mend;
+    int rounds;
+} fitted;
+
+static void clear_fitted(fitted* f) {
+    ruga_mend_clear(&f->mend);
+    ruga_paths_clear(&f->paths);
+    ruga_sheet_clear(&f->sheet);
+    *f = (fitted){0};
+}
+
+static int count_splits(const fitted* f) {
+    return f->mend.split_edges + f->mend.split_faces;
+}
+
+// Mends the sheet for the curves from one stage to another.
+static ruga_status fit_stages(const ruga_curves* curves, const int stages[2], const ruga_raster_def* def,
+                              fitted* f) {
+    bool fits = false;
+    RUGA_TRY(ruga_paths_add(&f->sheet, curves, stages, def->snap, def->corner, &f->paths));
+    for (int k = 0; !fits && k < def->rounds; k++, f->rounds++) {
+        RUGA_TRY(ruga_mend_round(&f->mend, &fits));
+    }
+    return fits ? RUGA_OK : ruga_mend_give_up(&f->mend);
+}
+
+static ruga_status start_fit(const ruga_mesh* mesh, const ruga_raster_def* def, fitted* f) {
+    clear_fitted(f);
+    f->mend = (ruga_mend){.sheet = &f->sheet, .paths = &f->paths, .def = def};
+    return ruga_sheet_create(mesh, &f->sheet);
+}
+
+static ruga_status fit(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
+                       bool apart, fitted* f) {
+    int last = last_stage(curves, INT_MAX);
+    RUGA_TRY(start_fit(mesh, def, f));
+    RUGA_TRY(fit_stages(curves, (const int[2]){0, apart ? 0 : last}, def, f));
+    int splits = count_splits(f);
+    for (int s = 1; s <= last && apart; s++) {
+        memset(f->sheet.pinned, true, (size_t)f->sheet.mesh.vertex_count * sizeof *f->sheet.pinned);
+        ruga_status status = fit_stages(curves, (const int[2]){s, s}, def, f);
+        if (status == RUGA_BAD_INPUT || (status == RUGA_OK && count_splits(f) > splits)) {
+            RUGA_TRY(start_fit(mesh, def, f));
+            return fit_stages(curves, (const int[2]){0, last}, def, f);
+        }
+        RUGA_TRY(status);
+    }
+    return RUGA_OK;
+}
+
+// Whether a later curve has auxiliary chords near a vertex.
+static bool makes_slivers(const ruga_raster* r, const ruga_raster_def* def) {
+    for (int k = 0; k < r->chord_count; k++) {
+        const ruga_chord* chord = &r->chord[k];
+        for (int end = 0; end < 2 && r->curve[chord->curve].stage > 0 && r->facts[chord->curve].full; end++) {
+            double node = r->node[r->edges.triangle_edge[chord->triangle][chord->end[end] / 2]];
+            if (chord->end[end] % 2 && fmin(node, 1 - node) < def->reach) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Mended stage for stage where `apart`; *thin is SET where it is better not to.
+static ruga_status create(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
+                          bool apart, ruga_raster* raster, bool* thin) {
     ruga_status status = RUGA_OK;
     *raster = (ruga_raster){0};
-    ruga_sheet sheet = {0};
-    ruga_paths paths = {0};
-    ruga_mend mend = {.sheet = &sheet, .paths = &paths, .def = def};
-    build b = {.raster = raster, .sheet = &sheet};
-    bool fits = false;
-    RUGA_TRY_DONE(ruga_sheet_create(mesh, &sheet));
-    RUGA_TRY_DONE(ruga_paths_create(&sheet, curves, def->snap, def->corner, &paths));
-    for (; !fits && raster->rounds < def->rounds; raster->rounds++) {
-        RUGA_TRY_DONE(ruga_mend_round(&mend, &fits));
-    }
-    if (!fits) {
-        status = ruga_mend_give_up(&mend);
-        goto done;
-    }
-    for (int p = 0; p < paths.count && def->extend; p++) {
-        RUGA_TRY_DONE(extend_path(&sheet, &paths.path[p]));
+    ruga_raster whole = {0};
+    fitted f = {0};
+    ruga_sheet drawn;
+    build b = {.raster = raster};
+    RUGA_TRY_DONE(fit(mesh, curves, def, apart, &f));
+    for (int p = 0; p < f.paths.count && def->extend; p++) {
+        RUGA_TRY_DONE(extend_path(&f.sheet, &f.paths.path[p]));
     }
     if (!def->snap && def->extend) {
-        RUGA_TRY_DONE(ruga_mend_check(&mend));
+        RUGA_TRY_DONE(ruga_mend_check(&f.mend));
     }
-    raster->mesh = sheet.mesh;
-    raster->edges = sheet.edges;
-    sheet.mesh = (ruga_mesh){0};
-    sheet.edges = (ruga_connectivity){0};
-    b.sheet = &(ruga_sheet){.mesh = raster->mesh, .edges = raster->edges, .edge = sheet.edge};
-    RUGA_TRY_DONE(build_chords(&b, &paths, curves));
-    raster->moved = mend.moved;
-    raster->split_edges = mend.split_edges;
-    raster->split_faces = mend.split_faces;
+    raster->mesh = f.sheet.mesh;
+    raster->edges = f.sheet.edges;
+    f.sheet.mesh = (ruga_mesh){0};
+    f.sheet.edges = (ruga_connectivity){0};
+    drawn = (ruga_sheet){.mesh = raster->mesh, .edges = raster->edges, .edge = f.sheet.edge};
+    b.sheet = &drawn;
+    RUGA_TRY_DONE(build_chords(&b, &f.paths, curves, def->stage));
+    *thin = makes_slivers(raster, def);
+    if (last_stage(curves, INT_MAX) > def->stage) {
+        clear_build(&b);
+        whole = (ruga_raster){.mesh = raster->mesh, .edges = raster->edges}; // lent
+        b = (build){.raster = &whole, .sheet = &drawn};
+        RUGA_TRY_DONE(build_chords(&b, &f.paths, curves, INT_MAX));
+        *thin = makes_slivers(&whole, def);
+        RUGA_TRY_DONE(take_stage(&whole, raster));
+    }
+    raster->moved = f.mend.moved;
+    raster->split_edges = f.mend.split_edges;
+    raster->split_faces = f.mend.split_faces;
+    raster->rounds = f.rounds;
 done:
-    ruga_release(b.first_curve);
-    ruga_release(b.links);
-    ruga_release(b.node_links);
-    ruga_release(b.node_curve);
-    ruga_release(b.head);
-    ruga_release(b.next);
-    ruga_mend_clear(&mend);
-    ruga_paths_clear(&paths);
-    ruga_sheet_clear(&sheet);
+    clear_build(&b);
+    whole.mesh = (ruga_mesh){0};
+    whole.edges = (ruga_connectivity){0};
+    ruga_raster_clear(&whole);
+    clear_fitted(&f);
     if (status != RUGA_OK) {
         ruga_raster_clear(raster);
     }
     return status;
+}
+
+ruga_status ruga_raster_create(const ruga_mesh* mesh, const ruga_curves* curves, const ruga_raster_def* def,
+                               ruga_raster* raster) {
+    bool thin = false;
+    RUGA_TRY(create(mesh, curves, def, true, raster, &thin));
+    if (thin) {
+        ruga_raster_clear(raster);
+        RUGA_TRY(create(mesh, curves, def, false, raster, &thin));
+    }
+    return RUGA_OK;
 }

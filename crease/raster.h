@@ -16,6 +16,7 @@ typedef struct ruga_raster_def {
     double reach;  // edges: a vertex this near to a curve is moved onto it
     double merge;  // edges: what is nearer than this is taken for one place
     int rounds;    // of mending before giving up
+    int stage;     // of the curves that are there. The mesh is mended for all, so that it is one for all stages
 } ruga_raster_def;
 
 ruga_raster_def ruga_default_raster_def(void);
@@ -25,7 +26,7 @@ ruga_raster_def ruga_default_raster_def(void);
 typedef struct ruga_chord {
     int triangle;
     int end[2]; // in the direction of the curve
-    int curve;
+    int curve;  // -1 = auxiliary: one that comes later, in a triangle that has full freedom now
     double along[2]; // m, arc length of the curve at both ends
 } ruga_chord;
 

@@ -339,7 +339,8 @@ static const char reference_head[] =
     "  from 0: `--set handles.0.press=\"5 kPa\"`.\n"
     "- With `interior: none` there are no `lattice`, `coupling` and `prescribed`.\n"
     "- The scene's hash, which `--resume` compares, covers every value with its default in SI, but not\n"
-    "  `time.frames`, comments, spelling or the order of keys.\n\n"
+    "  `time.frames`, comments, spelling or the order of keys. Creases may be "
+    "[added](creases.md#creases-that-come-later).\n\n"
     "In the tables, N stands for the number of an entry in a list, and a value of `2 x m` for a list of two "
     "lengths.\n"
     "`ruga explain` shows all values of a scene, given or not.\n\n";

@@ -347,13 +347,12 @@ const ruga_key ruga_keys[] = {
            "conforms to the curve may do. auto: full where the curve bends, closes, meets another, or its "
            "values vary."),
     NUMBER("creases.N.start", CREASE(start), "s", "0 s", NOT_NEGATIVE,
-           "In dynamic motion: until then the curve bends like the material beside it, then it is a crease. "
-           "The sheet is "
-           "cut from the beginning, so freedom: full is what leaves it free to bend until then."),
+           "When the crease comes: until then the sheet is not cut along it, then it is, as it lies and moves."),
     SECTION("creases.N.hinge", "{}",
             "The spring about the curve, k l / 2 (theta - rest)^2 for a length l of it."),
     VALUES("creases.N.hinge.stiffness", CREASE(stiffness), "N", "0.02 N", NOT_NEGATIVE, NULL,
-           "k, in N m/rad for each m. One value, or one for each point of polyline, uv or vertices."),
+           "k, in N m/rad for each m. One value, or one for each point of polyline, uv or vertices. More "
+           "than 1,000 E h times the mean edge counts as that."),
     NUMBER("creases.N.hinge.length", CREASE(length), "m", NULL, POSITIVE,
            "In place of stiffness: k = E h^3 / (12 (1 - nu^2)) over this length."),
     VALUES("creases.N.hinge.rest", CREASE(rest), "rad", "(as the mesh has it)", ANY, "assigned",

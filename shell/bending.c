@@ -20,118 +20,181 @@
 // result.)
 #include "shell/bending.h"
 
-#include "core/vec3.h"
+#include "core/wide.h"
 
 // A triangle collapsed to a needle or a point has no angle, and must only not give infinities: lengths count
 // as at least this part of the triangle's size, and never below 1e-50 m.
 static const double COLLAPSED_SQUARE = 1e-20;
 static const double LEAST_SQUARE = 1e-100;
 
-// |e|^2 and |n|^2 of the edge e and the normal n = e x d, kept above the floors.
-static double safe_length_square(const double e[3], const double d[3]) {
-    return fmax(ruga_dot(e, e), COLLAPSED_SQUARE * ruga_dot(d, d) + LEAST_SQUARE);
+RUGA_WIDE_PART double larger(double a, double b) {
+    return a > b ? a : b;
 }
 
-static double safe_normal_square(const double n[3], const double e[3], const double d[3]) {
-    double size = ruga_dot(e, e) + ruga_dot(d, d);
-    return fmax(ruga_dot(n, n), COLLAPSED_SQUARE * size * size + LEAST_SQUARE);
+// |e|^2 of an edge and |n|^2 of the normal e x d, kept above the floors; size: sum of the edges' squares.
+RUGA_WIDE_PART double safe_length_square(double square, double size) {
+    return larger(square, COLLAPSED_SQUARE * size + LEAST_SQUARE);
 }
 
-double ruga_angle_difference(double a, double b) {
-    double difference = a - b;
-    if (difference > RUGA_PI) {
-        return difference - 2 * RUGA_PI;
+RUGA_WIDE_PART double safe_normal_square(double square, double size) {
+    return larger(square, COLLAPSED_SQUARE * size * size + LEAST_SQUARE);
+}
+
+// Of the triangle with the edges e and d from one corner.
+RUGA_WIDE_PART double size_of(const double e[3], const double d[3]) {
+    return 2 * (ruga_dot(e, e) + ruga_dot(d, d) - ruga_dot(e, d));
+}
+
+RUGA_WIDE static void measure(int count, ruga_hinge_lanes* restrict h, double* restrict sine,
+                              double* restrict cosine) {
+    for (int i = 0; i < count; i++) {
+        double e[3], d2[3], d3[3], n2[3], n3[3];
+        for (int c = 0; c < 3; c++) {
+            e[c] = h->x[1][c][i] - h->x[0][c][i];
+            d2[c] = h->x[2][c][i] - h->x[0][c][i];
+            d3[c] = h->x[3][c][i] - h->x[0][c][i];
+        }
+        ruga_cross(e, d2, n2);
+        ruga_cross(d3, e, n3);
+        double square = ruga_dot(e, e), length = sqrt(square), size2 = size_of(e, d2), size3 = size_of(e, d3);
+        double s2 = length / safe_normal_square(ruga_dot(n2, n2), size2);
+        double s3 = length / safe_normal_square(ruga_dot(n3, n3), size3);
+        double t2 = ruga_dot(d2, e) / safe_length_square(square, size2);
+        double t3 = ruga_dot(d3, e) / safe_length_square(square, size3);
+        for (int c = 0; c < 3; c++) {
+            double g2 = s2 * n2[c], g3 = s3 * n3[c];
+            h->gradient[0][c][i] = -(1 - t2) * g2 - (1 - t3) * g3;
+            h->gradient[1][c][i] = -t2 * g2 - t3 * g3;
+            h->gradient[2][c][i] = g2;
+            h->gradient[3][c][i] = g3;
+        }
+        // (n3 x n2).e = |e|^2 d3.n2
+        sine[i] = length * ruga_dot(d3, n2);
+        cosine[i] = ruga_dot(n2, n3);
     }
-    return difference > -RUGA_PI ? difference : difference + 2 * RUGA_PI;
+}
+
+void ruga_hinge_lanes_measure(int count, ruga_hinge_lanes* hinges) {
+    double sine[RUGA_LANES] = {0}, cosine[RUGA_LANES] = {0};
+    measure(count, hinges, sine, cosine);
+    ruga_lanes_angle(count, sine, cosine, hinges->angle);
 }
 
 double ruga_hinge_angle(const double* const x[4], double gradient[4][3]) {
-    double e[3], d2[3], d3[3], n2[3], n3[3];
-    ruga_subtract(x[1], x[0], e);
-    ruga_subtract(x[2], x[0], d2);
-    ruga_subtract(x[3], x[0], d3);
-    ruga_cross(e, d2, n2);
-    ruga_cross(d3, e, n3);
-    double length = ruga_norm(e);
+    ruga_hinge_lanes one;
+    for (int i = 0; i < 4; i++) {
+        for (int c = 0; c < 3; c++) {
+            one.x[i][c][0] = x[i][c];
+        }
+    }
+    ruga_hinge_lanes_measure(1, &one);
     if (gradient) {
-        double s2 = length / safe_normal_square(n2, e, d2), s3 = length / safe_normal_square(n3, e, d3);
-        double t2 = ruga_dot(d2, e) / safe_length_square(e, d2);
-        double t3 = ruga_dot(d3, e) / safe_length_square(e, d3);
-        for (int c = 0; c < 3; c++) {
-            double g2 = s2 * n2[c], g3 = s3 * n3[c];
-            gradient[0][c] = -(1 - t2) * g2 - (1 - t3) * g3;
-            gradient[1][c] = -t2 * g2 - t3 * g3;
-            gradient[2][c] = g2;
-            gradient[3][c] = g3;
-        }
+        ruga_lanes_store(1, 4, one.gradient, gradient[0]);
     }
-    // (n3 x n2).e = |e|^2 d3.n2
-    return atan2(length * ruga_dot(d3, n2), ruga_dot(n2, n3));
+    return one.angle[0];
 }
 
-// Every block above is a n^T + n b^T with the triangle's n. Adds the a and b of the six blocks, times the
-// moment, for the edge from corner i to corner i + 1.
-static void add_edge(const double* const x[3], int i, const double n[3], double normal_length, double moment,
-                     double a[RUGA_TRIANGLE_BLOCKS][3], double b[RUGA_TRIANGLE_BLOCKS][3]) {
-    // Number of the lower block of two corners.
-    static const int lower[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-    const int corner[3] = {i, (i + 1) % 3, (i + 2) % 3};
-    double e[3], d[3], m[3];
-    ruga_subtract(x[corner[1]], x[corner[0]], e);
-    ruga_subtract(x[corner[2]], x[corner[0]], d);
-    double square = safe_length_square(e, d);
-    double length = sqrt(square);
-    double t = ruga_dot(d, e) / square, s = 1 - t;
-    ruga_cross(n, e, m);
-    double per_square = square / (normal_length * normal_length); // 1 / h^2
-    double slide = 1 / (length * normal_length);                  // R = slide e n^T
-    for (int c = 0; c < 3; c++) {
-        m[c] *= moment * per_square / length;
-        e[c] *= moment * slide;
-    }
-    double p = 0.5 / (square * per_square); // P = p M
-    // Row corner, column corner, factors of M, R and R^T.
-    const struct {
-        int row, column;
-        double m, r, r_transposed;
-    } term[RUGA_TRIANGLE_BLOCKS] = {
-        {0, 0, -s * s - p, -s, -s}, {1, 1, -t * t - p, t, t}, {2, 2, -1, 0, 0},
-        {0, 1, -t * s + p, s, -t},  {2, 0, s, 1, 0},          {2, 1, t, -1, 0},
-    };
-    for (int k = 0; k < RUGA_TRIANGLE_BLOCKS; k++) {
-        int row = corner[term[k].row], column = corner[term[k].column];
-        bool transposed = row < column;
-        double r = transposed ? term[k].r_transposed : term[k].r;
-        double r_transposed = transposed ? term[k].r : term[k].r_transposed;
-        int target = lower[row][column];
+RUGA_WIDE static void add_moments(int count, double (*const restrict moment)[RUGA_LANES],
+                                  ruga_triangle_lanes* restrict t) {
+    for (int i = 0; i < count; i++) {
+        double e[3][3], n[3], w[3] = {0, 0, 0};
         for (int c = 0; c < 3; c++) {
-            a[target][c] += term[k].m * m[c] + r * e[c];
-            b[target][c] += term[k].m * m[c] + r_transposed * e[c];
+            e[0][c] = t->x[1][c][i] - t->x[0][c][i];
+            e[1][c] = t->x[2][c][i] - t->x[1][c][i];
+            e[2][c] = t->x[0][c][i] - t->x[2][c][i];
         }
-    }
-}
-
-void ruga_hinge_add_hessian(const double* const x[3], const double moment[3],
-                            double block[RUGA_TRIANGLE_BLOCKS][9]) {
-    double e[3], d[3], n[3];
-    ruga_subtract(x[1], x[0], e);
-    ruga_subtract(x[2], x[0], d);
-    ruga_cross(e, d, n);
-    double normal_length = sqrt(safe_normal_square(n, e, d));
-    for (int c = 0; c < 3; c++) {
-        n[c] /= normal_length;
-    }
-    double a[RUGA_TRIANGLE_BLOCKS][3] = {{0}}, b[RUGA_TRIANGLE_BLOCKS][3] = {{0}};
-    for (int i = 0; i < 3; i++) {
-        if (moment[i] != 0) {
-            add_edge(x, i, n, normal_length, moment[i], a, b);
+        ruga_cross(e[0], e[1], n);
+        double square[3] = {ruga_dot(e[0], e[0]), ruga_dot(e[1], e[1]), ruga_dot(e[2], e[2])};
+        double size = square[0] + square[1] + square[2];
+        double per_square = 1 / safe_normal_square(ruga_dot(n, n), size);
+        for (int k = 0; k < 3; k++) {
+            int next = (k + 1) % 3, across = (k + 2) % 3;
+            double force = moment[k][i] * sqrt(square[k]) * per_square;
+            double along = -ruga_dot(e[across], e[k]) / safe_length_square(square[k], size);
+            w[k] -= (1 - along) * force;
+            w[next] -= along * force;
+            w[across] += force;
         }
-    }
-    for (int k = 0; k < RUGA_TRIANGLE_BLOCKS; k++) {
-        for (int r = 0; r < 3; r++) {
+        for (int k = 0; k < 3; k++) {
             for (int c = 0; c < 3; c++) {
-                block[k][3 * r + c] += a[k][r] * n[c] + n[r] * b[k][c];
+                t->gradient[k][c][i] += w[k] * n[c];
             }
         }
     }
+}
+
+void ruga_hinge_lanes_add(int count, double (*const moment)[RUGA_LANES], ruga_triangle_lanes* triangles) {
+    add_moments(count, moment, triangles);
+}
+
+// Every block above is a n^T + n b^T with the triangle's n. Adds the a and b of the blocks (1, 1), (2, 1) and
+// (2, 2), times the moment, for the edge e from corner `edge` to the next; last: the edge that ends where e
+// begins.
+RUGA_WIDE_PART void add_edge(int edge, const double e[3], const double last[3], const double n[3],
+                             double normal_square, double size, double moment, double a[3][3],
+                             double b[3][3]) {
+    double m[3], square = safe_length_square(ruga_dot(e, e), size), length = sqrt(square);
+    double t = -ruga_dot(last, e) / square, s = 1 - t;
+    ruga_cross(n, e, m);
+    double along = moment * length / normal_square;         // of m / h^2
+    double slide = moment / (length * sqrt(normal_square)); // of R = e n^T / (L^2 h)
+    double p = 0.5 * normal_square / (square * square);     // P = p M
+    // Factors of M, R and R^T: of the edge's beginning, its end, and the corner across, each with itself; and
+    // of each with the one before, row first.
+    const double own[3][3] = {{-s * s - p, -s, -s}, {-t * t - p, t, t}, {-1, 0, 0}};
+    const double before[3][3] = {{s, 0, 1}, {p - t * s, -t, s}, {t, -1, 0}};
+    const double* factor[3] = {own[(4 - edge) % 3], before[(5 - edge) % 3], own[(5 - edge) % 3]};
+    for (int k = 0; k < 3; k++) {
+        for (int c = 0; c < 3; c++) {
+            a[k][c] += factor[k][0] * along * m[c] + factor[k][1] * slide * e[c];
+            b[k][c] += factor[k][0] * along * m[c] + factor[k][2] * slide * e[c];
+        }
+    }
+}
+
+RUGA_WIDE_PART void add_block(const double a[3], const double b[3], const double n[3],
+                              double (*block)[RUGA_LANES], int lane) {
+    for (int k = 0; k < 9; k++) {
+        block[k][lane] += a[k / 3] * n[k % 3] + n[k / 3] * b[k % 3];
+    }
+}
+
+RUGA_WIDE static void add_hessians(int count, double (*const restrict moment)[RUGA_LANES],
+                                   ruga_triangle_lanes* restrict t) {
+    for (int i = 0; i < count; i++) {
+        double e[3][3], n[3], a[3][3] = {{0}}, b[3][3] = {{0}};
+        for (int k = 0; k < 9; k++) {
+            e[k / 3][k % 3] = t->x[(k / 3 + 1) % 3][k % 3][i] - t->x[k / 3][k % 3][i];
+        }
+        ruga_cross(e[0], e[1], n);
+        double size = ruga_dot(e[0], e[0]) + ruga_dot(e[1], e[1]) + ruga_dot(e[2], e[2]);
+        double normal_square = safe_normal_square(ruga_dot(n, n), size), scale = 1 / sqrt(normal_square);
+        for (int c = 0; c < 3; c++) {
+            n[c] *= scale;
+        }
+        add_edge(0, e[0], e[2], n, normal_square, size, moment[0][i], a, b);
+        add_edge(1, e[1], e[0], n, normal_square, size, moment[1][i], a, b);
+        add_edge(2, e[2], e[1], n, normal_square, size, moment[2][i], a, b);
+        add_block(a[0], b[0], n, t->block[0], i);
+        add_block(a[1], b[1], n, t->block[1], i);
+        add_block(a[2], b[2], n, t->block[2], i);
+    }
+}
+
+void ruga_hinge_lanes_add_hessian(int count, double (*const moment)[RUGA_LANES],
+                                  ruga_triangle_lanes* triangles) {
+    add_hessians(count, moment, triangles);
+}
+
+void ruga_hinge_hessian(const double* const x[3], const double moment[3],
+                        double block[RUGA_TRIANGLE_BLOCKS][9]) {
+    ruga_triangle_lanes one;
+    double own[3][RUGA_LANES];
+    ruga_triangle_lanes_set(&one, x);
+    for (int k = 0; k < 27; k++) {
+        one.block[k / 9][k % 9][0] = 0;
+        own[k / 9][0] = moment[k / 9];
+    }
+    ruga_hinge_lanes_add_hessian(1, own, &one);
+    ruga_triangle_lanes_blocks(1, &one, (double(*)[RUGA_TRIANGLE_BLOCKS][9])block);
 }

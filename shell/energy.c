@@ -5,13 +5,15 @@
 //   E = k s/2 (theta - theta0)^2,
 // s the mean over its two triangles of what their strain does to their thickness (thickness.c).
 //
+// A hinge's forces are its moment times grad theta, of which either triangle brings a part along its normal,
+// and (theta - theta0)^2/2 p, p = k grad s. So the hinges' moments come first, and then each triangle adds up
+// the forces on its corners; they are gathered for each vertex in an order that the mesh alone decides: the
+// bits are the same for any number of threads. Elements are taken RUGA_LANES at a time, side by side.
+//
 // The Hessian of a hinge is k s grad grad^T + k s (theta - theta0) H, and H splits into one part for each of
 // the two triangles; these are added to the matrices of the triangles. So are those of s. So each triangle
-// writes a 9 x 9 matrix, and a hinge's own part is made from its gradients when it is gathered: with p = k
-// grad s, t = theta - theta0, its force is k s t grad theta + t^2/2 p, and the mixed part of its Hessian
-// t (grad theta p^T + p grad theta^T). Everything is computed for each
-// element first, and then gathered for each vertex, in an order that the mesh alone decides: the bits are the
-// same for any number of threads.
+// writes a 9 x 9 matrix, and a hinge's own part, with the mixed one, is made when it is gathered:
+//   grad q^T + q grad^T,  q = k s/2 grad + (1 - clamp) (theta - theta0) p.
 //
 // With directors (directors.c) a hinge's moment is not its stiffness times its angle but comes from all of
 // them. The part w grad t Q (w grad t)^T couples the three hinges of a triangle with one another and with its
@@ -21,6 +23,7 @@
 
 #include "core/parallel.h"
 #include "core/vec3.h"
+#include "core/wide.h"
 #include "shell/bending.h"
 #include "shell/thickness.h"
 
@@ -34,34 +37,87 @@ typedef struct pass {
     double* hessian;
 } pass;
 
-static void triangle_energies(int begin, int end, int chunk, void* context) {
-    const pass* p = context;
-    const ruga_shell* shell = p->shell;
+// Energies and squares of nodal forces, side by side.
+typedef struct sums {
+    double energy[RUGA_LANES], force_square[RUGA_LANES];
+} sums;
+
+static void end_chunk(const ruga_shell* shell, int chunk, const sums* s) {
     double energy = 0, force_square = 0;
-    for (int f = begin; f < end; f++) {
-        const double* x[3];
-        double(*g)[3] = shell->triangle_gradient[f];
-        ruga_triangle_corners(shell->triangle[f], p->x, x);
-        energy += ruga_membrane_energy(shell->membrane, shell->poisson, &shell->triangle_rest[f], x, g);
-        if (shell->thickness) {
-            shell->thickness[f] = ruga_thickness_stiffness(shell->thickness_power, shell->rest_area[f], x,
-                                                           shell->thickness_gradient[f]);
-        }
-        force_square += ruga_dot(g[0], g[0]) + ruga_dot(g[1], g[1]) + ruga_dot(g[2], g[2]);
+    for (int i = 0; i < RUGA_LANES; i++) {
+        energy += s->energy[i];
+        force_square += s->force_square[i];
     }
     shell->partial[chunk][0] = energy;
     shell->partial[chunk][1] = force_square;
 }
 
-static void hinge_angles(int begin, int end, int chunk, void* context) {
+static void thicknesses(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const pass* p = context;
     const ruga_shell* shell = p->shell;
-    for (int h = begin; h < end; h++) {
-        const double* x[4];
-        ruga_hinge_corners(shell->hinge[h], p->x, x);
-        shell->hinge_angle[h] =
-            ruga_angle_difference(ruga_hinge_angle(x, shell->hinge_gradient[h]), shell->hinge_rest[h].angle);
+    for (int f = begin; f < end; f += RUGA_LANES) {
+        ruga_triangle_lanes t;
+        int count = ruga_lanes_from(f, end);
+        ruga_lanes_load(count, 3, shell->triangle[f], p->x, t.x);
+        ruga_thickness_lanes_stiffness(count, shell->thickness_power, shell->rest_area + f, &t,
+                                       shell->thickness + f);
+    }
+}
+
+// ---- hinges --------------------------------------------------------------------------------------------
+
+typedef struct bends {
+    double stiffness[RUGA_LANES], rest[RUGA_LANES]; // k, theta0
+    double factor[RUGA_LANES];                      // s
+    double slope[2][RUGA_LANES];                    // k/2 times either triangle's z
+    double angle[RUGA_LANES], moment[RUGA_LANES];   // theta - theta0, k s (theta - theta0)
+    double bend[RUGA_LANES];                        // k/4 (theta - theta0)^2
+    double q[4][3][RUGA_LANES];
+} bends;
+
+RUGA_WIDE static void set_moments(int count, const ruga_hinge_lanes* restrict h, bends* restrict b) {
+    for (int i = 0; i < count; i++) {
+        double angle = ruga_angle_difference(h->angle[i], b->rest[i]);
+        b->angle[i] = angle;
+        b->moment[i] = b->stiffness[i] * b->factor[i] * angle;
+        b->bend[i] = 0.25 * b->stiffness[i] * angle * angle;
+    }
+}
+
+static void load_stiffness(const ruga_shell* shell, int h, int count, bends* b) {
+    for (int i = 0; i < count; i++) {
+        b->stiffness[i] = shell->hinge_rest[h + i].stiffness;
+        b->rest[i] = shell->hinge_rest[h + i].angle;
+        if (shell->thickness) {
+            const double* one = shell->thickness[shell->hinge_side[h + i][0]];
+            const double* other = shell->thickness[shell->hinge_side[h + i][1]];
+            b->factor[i] = 0.5 * (one[0] + other[0]);
+            b->slope[0][i] = 0.5 * b->stiffness[i] * one[1];
+            b->slope[1][i] = 0.5 * b->stiffness[i] * other[1];
+        } else {
+            b->factor[i] = 1;
+            b->slope[0][i] = b->slope[1][i] = 0;
+        }
+    }
+}
+
+static void measure_hinges(const pass* p, int h, int count, ruga_hinge_lanes* lanes, bends* b) {
+    ruga_lanes_load(count, 4, p->shell->hinge[h], p->x, lanes->x);
+    load_stiffness(p->shell, h, count, b);
+    ruga_hinge_lanes_measure(count, lanes);
+    set_moments(count, lanes, b);
+}
+
+static void hinge_angles(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    for (int h = begin; h < end; h += RUGA_LANES) {
+        ruga_hinge_lanes lanes;
+        bends b;
+        int count = ruga_lanes_from(h, end);
+        measure_hinges(p, h, count, &lanes, &b);
+        memcpy(p->shell->hinge_angle + h, b.angle, (size_t)count * sizeof b.angle[0]);
     }
 }
 
@@ -72,58 +128,161 @@ static void settle_directors(pass* p) {
     ruga_directors_settle(&directors, p->shell->hinge_angle, p->shell->hinge_moment);
 }
 
-// Sets the hinge's p and returns its s.
-static double set_hinge_pull(const ruga_shell* shell, int h) {
-    // Corners of the hinge from the corner at which the edge begins onwards, on either side.
-    static const int corner[2][3] = {{0, 1, 2}, {1, 0, 3}};
-    double(*pull)[3] = shell->hinge_pull[h], factor = 0;
-    memset(pull, 0, sizeof shell->hinge_pull[h]);
-    for (int side = 0; side < 2; side++) {
-        int f = shell->hinge_side[h][side] / 3, first = shell->hinge_side[h][side] % 3;
-        factor += 0.5 * shell->thickness[f];
-        for (int i = 0; i < 3; i++) {
-            ruga_add_scaled(0.5 * shell->hinge_rest[h].stiffness,
-                            shell->thickness_gradient[f][(first + i) % 3], pull[corner[side][i]]);
-        }
+// p of the hinge: each triangle brings k/2 z n x d to a corner (thickness.c), d the edge across from it as
+// the triangle runs, which is d2 - e, -d2 and e for corners 0, 1 and 2, and e - d3, d3 and -e for 0, 1 and 3.
+RUGA_WIDE_PART void pull_of(const ruga_hinge_lanes* h, const bends* b, int i, double pull[4][3]) {
+    double e[3], d2[3], d3[3], n[3], along_e[3], along_d[3];
+    for (int c = 0; c < 3; c++) {
+        e[c] = h->x[1][c][i] - h->x[0][c][i];
+        d2[c] = h->x[2][c][i] - h->x[0][c][i];
+        d3[c] = h->x[3][c][i] - h->x[0][c][i];
     }
-    return factor;
+    ruga_cross(e, d2, n);
+    ruga_cross(n, e, along_e);
+    ruga_cross(n, d2, along_d);
+    for (int c = 0; c < 3; c++) {
+        pull[0][c] = b->slope[0][i] * (along_d[c] - along_e[c]);
+        pull[1][c] = -b->slope[0][i] * along_d[c];
+        pull[2][c] = b->slope[0][i] * along_e[c];
+    }
+    ruga_cross(d3, e, n);
+    ruga_cross(n, e, along_e);
+    ruga_cross(n, d3, along_d);
+    for (int c = 0; c < 3; c++) {
+        pull[0][c] += b->slope[1][i] * (along_e[c] - along_d[c]);
+        pull[1][c] += b->slope[1][i] * along_d[c];
+        pull[3][c] = -b->slope[1][i] * along_e[c];
+    }
 }
 
-static double force_square_of(const ruga_shell* shell, int h) {
-    double sum = 0;
-    for (int c = 0; c < 4; c++) {
-        double force[3] = {0, 0, 0};
-        ruga_add_scaled(shell->hinge_moment[h], shell->hinge_gradient[h][c], force);
-        if (shell->thickness) {
-            ruga_add_scaled(0.5 * shell->hinge_angle[h] * shell->hinge_angle[h], shell->hinge_pull[h][c],
-                            force);
+RUGA_WIDE static void add_hinges(int count, const ruga_hinge_lanes* restrict h, const bends* restrict b,
+                                 sums* restrict sum) {
+    for (int i = 0; i < count; i++) {
+        double pull[4][3], square = 0, angle = b->angle[i], moment = b->moment[i];
+        pull_of(h, b, i, pull);
+        for (int k = 0; k < 4; k++) {
+            double force[3];
+            for (int c = 0; c < 3; c++) {
+                force[c] = moment * h->gradient[k][c][i] + 0.5 * angle * angle * pull[k][c];
+            }
+            square += ruga_dot(force, force);
         }
-        sum += ruga_dot(force, force);
+        sum->energy[i] += 0.5 * moment * angle;
+        sum->force_square[i] += square;
     }
-    return sum;
+}
+
+RUGA_WIDE static void set_q(int count, double clamp, const ruga_hinge_lanes* restrict h, bends* restrict b) {
+    for (int i = 0; i < count; i++) {
+        double pull[4][3], half = 0.5 * b->stiffness[i] * b->factor[i], mixed = (1 - clamp) * b->angle[i];
+        pull_of(h, b, i, pull);
+        for (int k = 0; k < 4; k++) {
+            for (int c = 0; c < 3; c++) {
+                b->q[k][c][i] = half * h->gradient[k][c][i] + mixed * pull[k][c];
+            }
+        }
+    }
+}
+
+static void store_products(int count, const ruga_hinge_lanes* h, const bends* b, double (*to)[2][4][3]) {
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < 12; k++) {
+            to[i][0][k / 3][k % 3] = h->gradient[k / 3][k % 3][i];
+            to[i][1][k / 3][k % 3] = b->q[k / 3][k % 3][i];
+        }
+    }
 }
 
 static void hinge_energies(int begin, int end, int chunk, void* context) {
     const pass* p = context;
     const ruga_shell* shell = p->shell;
-    double energy = 0, force_square = 0;
-    for (int h = begin; h < end; h++) {
-        const double* x[4];
-        double(*g)[3] = shell->hinge_gradient[h];
-        const ruga_hinge_rest* rest = &shell->hinge_rest[h];
-        ruga_hinge_corners(shell->hinge[h], p->x, x);
-        bool known = shell->has_directors; // angle and moment, by settle_directors
-        double angle =
-            known ? shell->hinge_angle[h] : ruga_angle_difference(ruga_hinge_angle(x, g), rest->angle);
-        double stiffness = rest->stiffness * (shell->thickness ? set_hinge_pull(shell, h) : 1);
-        double moment = known ? shell->hinge_moment[h] : stiffness * angle;
-        shell->hinge_angle[h] = angle;
-        shell->hinge_moment[h] = moment;
-        energy += 0.5 * moment * angle;
-        force_square += force_square_of(shell, h);
+    sums sum = {{0}, {0}};
+    for (int h = begin; h < end; h += RUGA_LANES) {
+        ruga_hinge_lanes lanes;
+        bends b;
+        int count = ruga_lanes_from(h, end);
+        size_t size = (size_t)count * sizeof(double);
+        measure_hinges(p, h, count, &lanes, &b);
+        if (shell->has_directors) {
+            memcpy(b.moment, shell->hinge_moment + h, size); // by settle_directors
+        } else {
+            memcpy(shell->hinge_moment + h, b.moment, size);
+        }
+        memcpy(shell->hinge_bend + h, b.bend, size);
+        add_hinges(count, &lanes, &b, &sum);
+        if (shell->has_directors) {
+            ruga_lanes_store(count, 4, lanes.gradient, shell->hinge_gradient[h][0]);
+        } else if (p->hessian) {
+            set_q(count, p->clamp, &lanes, &b);
+            store_products(count, &lanes, &b, shell->hinge_product + h);
+        }
     }
-    shell->partial[chunk][0] = energy;
-    shell->partial[chunk][1] = force_square;
+    end_chunk(shell, chunk, &sum);
+}
+
+// ---- triangles -----------------------------------------------------------------------------------------
+
+RUGA_WIDE static void add_triangles(int count, const ruga_triangle_lanes* restrict t,
+                                    const double* restrict energy, sums* restrict sum) {
+    for (int i = 0; i < count; i++) {
+        double square = 0;
+        for (int k = 0; k < 9; k++) {
+            square += t->gradient[k / 3][k % 3][i] * t->gradient[k / 3][k % 3][i];
+        }
+        sum->energy[i] += energy[i];
+        sum->force_square[i] += square;
+    }
+}
+
+// What the hinges at their edges do to triangles: moments, and their part in p as ruga_thickness_lanes_add
+// wants it.
+static void load_moments(const ruga_shell* shell, int f, int count, double (*moment)[RUGA_LANES],
+                         double* pull) {
+    const double *moment_of = shell->hinge_moment, *bend_of = shell->hinge_bend;
+    for (int i = 0; i < count; i++) {
+        double bend = 0;
+        for (int k = 0; k < 3; k++) {
+            int h = shell->triangle_hinge[f + i][k];
+            moment[k][i] = h < 0 ? 0 : moment_of[h];
+            bend += h < 0 ? 0 : bend_of[h];
+        }
+        pull[i] = bend;
+    }
+    // Further hinges at the same edges.
+    for (int k = 0; k < 3 * count && shell->next_hinge; k++) {
+        int i = k / 3, h = shell->triangle_hinge[f + i][k % 3];
+        while (h >= 0 && (h = shell->next_hinge[h][shell->hinge_side[h][1] == f + i]) >= 0) {
+            moment[k % 3][i] += moment_of[h];
+            pull[i] += bend_of[h];
+        }
+    }
+    for (int i = 0; i < count && shell->thickness; i++) {
+        pull[i] *= shell->thickness[f + i][1];
+    }
+}
+
+static void triangle_energies(int begin, int end, int chunk, void* context) {
+    const pass* p = context;
+    const ruga_shell* shell = p->shell;
+    sums sum = {{0}, {0}};
+    for (int f = begin; f < end; f += RUGA_LANES) {
+        ruga_triangle_lanes t;
+        double energy[RUGA_LANES], moment[3][RUGA_LANES], pull[RUGA_LANES] = {0};
+        int count = ruga_lanes_from(f, end);
+        ruga_lanes_load(count, 3, shell->triangle[f], p->x, t.x);
+        ruga_membrane_lanes_energy(shell->membrane, shell->poisson, count, shell->triangle_rest + f, &t,
+                                   energy);
+        add_triangles(count, &t, energy, &sum);
+        if (p->gradient) {
+            load_moments(shell, f, count, moment, pull);
+            ruga_hinge_lanes_add(count, moment, &t);
+            if (shell->thickness) {
+                ruga_thickness_lanes_add(count, pull, &t);
+            }
+            ruga_lanes_store(count, 3, t.gradient, shell->triangle_gradient[f][0]);
+        }
+    }
+    end_chunk(shell, chunk, &sum);
 }
 
 // Sum of one column of the partial sums, in their order.
@@ -138,57 +297,42 @@ static double total(const ruga_shell* shell, int element_count, int column) {
 static void gather_gradient(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const pass* p = context;
-    const ruga_shell* shell = p->shell;
+    const ruga_gather* from = &p->shell->vertex_triangle;
+    const double(*corner)[3] = (const double(*)[3])p->shell->triangle_gradient;
     for (int v = begin; v < end; v++) {
         double sum[3] = {0, 0, 0};
-        const ruga_gather* from = &shell->vertex_triangle;
         for (int k = from->start[v]; k < from->start[v + 1]; k++) {
-            int item = from->item[k];
-            ruga_add_scaled(1, shell->triangle_gradient[item / 3][item % 3], sum);
-        }
-        from = &shell->vertex_hinge;
-        for (int k = from->start[v]; k < from->start[v + 1]; k++) {
-            int h = from->item[k] / 4, corner = from->item[k] % 4;
-            ruga_add_scaled(shell->hinge_moment[h], shell->hinge_gradient[h][corner], sum);
-            if (shell->thickness) {
-                ruga_add_scaled(0.5 * shell->hinge_angle[h] * shell->hinge_angle[h],
-                                shell->hinge_pull[h][corner], sum);
-            }
+            ruga_add_scaled(1, corner[from->item[k]], sum);
         }
         memcpy(p->gradient + 3 * (size_t)v, sum, sizeof sum);
     }
 }
 
-static int side_of(const ruga_shell* shell, int h, int f) {
-    return shell->hinge_side[h][1] / 3 == f;
-}
+// ---- Hessian -------------------------------------------------------------------------------------------
 
 static void triangle_hessians(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const pass* p = context;
     const ruga_shell* shell = p->shell;
-    for (int f = begin; f < end; f++) {
-        const double* x[3];
-        double moment[3], bent = 0;
-        ruga_triangle_corners(shell->triangle[f], p->x, x);
-        ruga_membrane_hessian(shell->membrane, shell->poisson, &shell->triangle_rest[f], x, p->clamp,
-                              shell->triangle_block[f]);
-        for (int i = 0; i < 3; i++) {
-            int h = shell->triangle_hinge[f][i];
-            moment[i] = h < 0 ? 0 : (1 - p->clamp) * shell->hinge_moment[h];
-            bent +=
-                h < 0 ? 0
-                      : 0.25 * shell->hinge_rest[h].stiffness * shell->hinge_angle[h] * shell->hinge_angle[h];
-            while (shell->next_hinge && h >= 0 && (h = shell->next_hinge[h][side_of(shell, h, f)]) >= 0) {
-                moment[i] += (1 - p->clamp) * shell->hinge_moment[h];
-                bent += 0.25 * shell->hinge_rest[h].stiffness * shell->hinge_angle[h] * shell->hinge_angle[h];
+    for (int f = begin; f < end; f += RUGA_LANES) {
+        ruga_triangle_lanes t;
+        double moment[3][RUGA_LANES], pull[RUGA_LANES] = {0};
+        int count = ruga_lanes_from(f, end);
+        ruga_lanes_load(count, 3, shell->triangle[f], p->x, t.x);
+        load_moments(shell, f, count, moment, pull);
+        for (int i = 0; i < count; i++) {
+            for (int k = 0; k < 3; k++) {
+                moment[k][i] *= 1 - p->clamp;
             }
+            pull[i] *= 1 - p->clamp;
         }
-        ruga_hinge_add_hessian(x, moment, shell->triangle_block[f]);
-        if (shell->thickness && p->clamp < 1) {
-            ruga_thickness_add_hessian(shell->thickness_power, shell->rest_area[f], x, (1 - p->clamp) * bent,
-                                       shell->triangle_block[f]);
+        ruga_membrane_lanes_hessian(shell->membrane, shell->poisson, count, shell->triangle_rest + f,
+                                    p->clamp, &t);
+        ruga_hinge_lanes_add_hessian(count, moment, &t);
+        if (shell->thickness) {
+            ruga_thickness_lanes_add_hessian(count, shell->thickness_power, pull, &t);
         }
+        ruga_triangle_lanes_blocks(count, &t, shell->triangle_block + f);
     }
 }
 
@@ -216,23 +360,6 @@ static void add_product(double scale, const double row[3], const double column[3
             sum[3 * r + c] += s * column[c];
         }
     }
-}
-
-static void add_hinge_block(const ruga_shell* shell, double clamp, int h, int row, int column,
-                            double sum[9]) {
-    const double(*g)[3] = (const double(*)[3])shell->hinge_gradient[h];
-    double stiffness = shell->hinge_rest[h].stiffness;
-    if (!shell->thickness) {
-        add_product(stiffness, g[row], g[column], sum);
-        return;
-    }
-    const double(*pull)[3] = (const double(*)[3])shell->hinge_pull[h];
-    const int* side = shell->hinge_side[h];
-    double mixed = (1 - clamp) * shell->hinge_angle[h];
-    stiffness *= 0.5 * (shell->thickness[side[0] / 3] + shell->thickness[side[1] / 3]);
-    add_product(stiffness, g[row], g[column], sum);
-    add_product(mixed, g[row], pull[column], sum);
-    add_product(mixed, pull[row], g[column], sum);
 }
 
 // Gradients of the angles of a triangle's hinges, times its parts of them, by the vertices of its patch.
@@ -315,7 +442,9 @@ static void gather_hessian(int begin, int end, int chunk, void* context) {
             for (int k = shell->has_directors ? 0 : hinges->start[b];
                  !shell->has_directors && k < hinges->start[b + 1]; k++) {
                 int h = hinges->item[k] / 16, pair = hinges->item[k] % 16;
-                add_hinge_block(shell, p->clamp, h, pair / 4, pair % 4, sum);
+                double(*g)[3] = shell->hinge_product[h][0], (*q)[3] = shell->hinge_product[h][1];
+                add_product(1, g[pair / 4], q[pair % 4], sum);
+                add_product(1, q[pair / 4], g[pair % 4], sum);
             }
             // Column c begins at its diagonal: it lacks the first c entries of the first block.
             int number = b - shell->block_start[v];
@@ -334,15 +463,20 @@ ruga_status ruga_shell_energy(const ruga_shell* shell, const double* x, double c
     RUGA_ASSERT(clamp >= 0 && clamp <= 1);
     pass p = {shell, x, clamp, gradient, hessian};
     ruga_shell_energies sum;
-    ruga_parallel_for(shell->triangle_count, RUGA_SHELL_CHUNK, triangle_energies, &p);
-    sum.membrane = total(shell, shell->triangle_count, 0);
-    sum.force_square = total(shell, shell->triangle_count, 1);
+    if (shell->thickness) {
+        ruga_parallel_for(shell->triangle_count, RUGA_SHELL_CHUNK, thicknesses, &p);
+    }
     if (shell->has_directors) {
         settle_directors(&p);
     }
     ruga_parallel_for(shell->hinge_count, RUGA_SHELL_CHUNK, hinge_energies, &p);
     sum.bending = total(shell, shell->hinge_count, 0);
-    sum.force_square += total(shell, shell->hinge_count, 1);
+    sum.force_square = total(shell, shell->hinge_count, 1);
+    if (energies || gradient) {
+        ruga_parallel_for(shell->triangle_count, RUGA_SHELL_CHUNK, triangle_energies, &p);
+        sum.membrane = total(shell, shell->triangle_count, 0);
+        sum.force_square += total(shell, shell->triangle_count, 1);
+    }
     if (energies) {
         *energies = sum;
     }

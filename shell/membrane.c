@@ -22,6 +22,7 @@
 #include "shell/membrane.h"
 
 #include "core/vec3.h"
+#include "core/wide.h"
 
 // Fibres are never this short in a sensible state; larger values would change results, smaller ones make a
 // collapsed triangle needlessly stiff sideways.
@@ -88,37 +89,32 @@ typedef struct point {
     double energy;
 } point;
 
-static void set_fibre(bool baraff_witkin, point* p, int a, double* strain, double* measure) {
-    double square = ruga_dot(p->w[a], p->w[a]);
-    *measure = 1;
-    p->z[a] = 0;
-    *strain = 0.5 * (square - 1);
-    if (baraff_witkin) {
-        double length = sqrt(square);
-        bool regular = length >= LENGTH_FLOOR;
-        *measure = regular ? length : LENGTH_FLOOR;
-        *strain = (regular ? length : 0.5 * (square / LENGTH_FLOOR + LENGTH_FLOOR)) - 1;
-        p->z[a] = regular;
-    }
+RUGA_WIDE_PART void set_fibre(bool baraff_witkin, point* p, int a, double* strain, double* measure) {
+    double square = ruga_dot(p->w[a], p->w[a]), length = sqrt(square);
+    bool regular = length >= LENGTH_FLOOR;
+    double floored = regular ? length : LENGTH_FLOOR;
+    double stretch = regular ? length : 0.5 * (square / LENGTH_FLOOR + LENGTH_FLOOR);
+    *measure = baraff_witkin ? floored : 1;
+    *strain = baraff_witkin ? stretch - 1 : 0.5 * (square - 1);
+    p->z[a] = baraff_witkin && regular ? 1 : 0;
     double scale = 1 / *measure;
     for (int c = 0; c < 3; c++) {
         p->f[a][c] = scale * p->w[a][c];
     }
 }
 
-static void evaluate(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
-                     const double* const x[3], point* p) {
-    double e1[3], e2[3];
-    ruga_subtract(x[1], x[0], e1);
-    ruga_subtract(x[2], x[0], e2);
+// e1, e2: from corner 0 to the others.
+RUGA_WIDE_PART void evaluate_edges(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
+                                   const double e1[3], const double e2[3], point* p) {
+    bool baraff_witkin = kind == RUGA_MEMBRANE_BARAFF_WITKIN;
     for (int a = 0; a < 2; a++) {
         for (int c = 0; c < 3; c++) {
             p->w[a][c] = rest->slope[0][a] * e1[c] + rest->slope[1][a] * e2[c];
         }
     }
     double eu, ev, mu, mv;
-    set_fibre(kind == RUGA_MEMBRANE_BARAFF_WITKIN, p, 0, &eu, &mu);
-    set_fibre(kind == RUGA_MEMBRANE_BARAFF_WITKIN, p, 1, &ev, &mv);
+    set_fibre(baraff_witkin, p, 0, &eu, &mu);
+    set_fibre(baraff_witkin, p, 1, &ev, &mv);
     double slant = ruga_dot(p->w[0], p->w[1]);
     p->stress[0] = rest->stretch * (eu + poisson * ev) / mu;
     p->stress[1] = rest->shear * slant;
@@ -127,83 +123,194 @@ static void evaluate(ruga_membrane kind, double poisson, const ruga_membrane_res
         0.5 * (rest->stretch * (eu * eu + ev * ev + 2 * poisson * eu * ev) + rest->shear * slant * slant);
 }
 
+static void evaluate(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
+                     const double* const x[3], point* p) {
+    double e1[3], e2[3];
+    ruga_subtract(x[1], x[0], e1);
+    ruga_subtract(x[2], x[0], e2);
+    evaluate_edges(kind, poisson, rest, e1, e2, p);
+}
+
+typedef struct rest_lanes {
+    double slope[2][2][RUGA_LANES], stretch[RUGA_LANES], shear[RUGA_LANES];
+} rest_lanes;
+
+static void load_rest(int count, const ruga_membrane_rest* rest, rest_lanes* lanes) {
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < 4; k++) {
+            lanes->slope[k / 2][k % 2][i] = rest[i].slope[k / 2][k % 2];
+        }
+        lanes->stretch[i] = rest[i].stretch;
+        lanes->shear[i] = rest[i].shear;
+    }
+}
+
+// Rest data and state of lane i.
+RUGA_WIDE_PART void evaluate_lane(ruga_membrane kind, double poisson, const rest_lanes* r,
+                                  const ruga_triangle_lanes* t, int i, ruga_membrane_rest* rest, point* p) {
+    double e1[3], e2[3];
+    for (int k = 0; k < 4; k++) {
+        rest->slope[k / 2][k % 2] = r->slope[k / 2][k % 2][i];
+    }
+    rest->stretch = r->stretch[i];
+    rest->shear = r->shear[i];
+    for (int c = 0; c < 3; c++) {
+        e1[c] = t->x[1][c][i] - t->x[0][c][i];
+        e2[c] = t->x[2][c][i] - t->x[0][c][i];
+    }
+    evaluate_edges(kind, poisson, rest, e1, e2, p);
+}
+
+RUGA_WIDE_PART void set_energies(ruga_membrane kind, double poisson, int count, const rest_lanes* restrict r,
+                                 ruga_triangle_lanes* restrict t, double* restrict energy) {
+    for (int i = 0; i < count; i++) {
+        ruga_membrane_rest rest;
+        point p;
+        evaluate_lane(kind, poisson, r, t, i, &rest, &p);
+        for (int c = 0; c < 3; c++) {
+            double pu = p.stress[0] * p.w[0][c] + p.stress[1] * p.w[1][c];
+            double pv = p.stress[1] * p.w[0][c] + p.stress[2] * p.w[1][c];
+            double g1 = rest.slope[0][0] * pu + rest.slope[0][1] * pv;
+            double g2 = rest.slope[1][0] * pu + rest.slope[1][1] * pv;
+            t->gradient[0][c][i] = -(g1 + g2);
+            t->gradient[1][c][i] = g1;
+            t->gradient[2][c][i] = g2;
+        }
+        energy[i] = p.energy;
+    }
+}
+
+// A loop for each kind, in which nothing asks for it.
+RUGA_WIDE static void set_energies_of_kind(ruga_membrane kind, double poisson, int count,
+                                           const rest_lanes* rest, ruga_triangle_lanes* t, double* energy) {
+    if (kind == RUGA_MEMBRANE_BARAFF_WITKIN) {
+        set_energies(RUGA_MEMBRANE_BARAFF_WITKIN, poisson, count, rest, t, energy);
+    } else {
+        set_energies(RUGA_MEMBRANE_STVK, poisson, count, rest, t, energy);
+    }
+}
+
+void ruga_membrane_lanes_energy(ruga_membrane kind, double poisson, int count, const ruga_membrane_rest* rest,
+                                ruga_triangle_lanes* triangles, double* energy) {
+    rest_lanes lanes;
+    load_rest(count, rest, &lanes);
+    set_energies_of_kind(kind, poisson, count, &lanes, triangles, energy);
+}
+
+void ruga_triangle_lanes_set(ruga_triangle_lanes* one, const double* const x[3]) {
+    for (int k = 0; k < 9; k++) {
+        one->x[k / 3][k % 3][0] = x[k / 3][k % 3];
+    }
+}
+
 double ruga_membrane_energy(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
                             const double* const x[3], double gradient[3][3]) {
-    point p;
-    evaluate(kind, poisson, rest, x, &p);
-    for (int c = 0; c < 3; c++) {
-        double pu = p.stress[0] * p.w[0][c] + p.stress[1] * p.w[1][c];
-        double pv = p.stress[1] * p.w[0][c] + p.stress[2] * p.w[1][c];
-        gradient[1][c] = rest->slope[0][0] * pu + rest->slope[0][1] * pv;
-        gradient[2][c] = rest->slope[1][0] * pu + rest->slope[1][1] * pv;
-        gradient[0][c] = -(gradient[1][c] + gradient[2][c]);
-    }
-    return p.energy;
+    ruga_triangle_lanes one;
+    double energy;
+    ruga_triangle_lanes_set(&one, x);
+    ruga_membrane_lanes_energy(kind, poisson, 1, rest, &one, &energy);
+    ruga_lanes_store(1, 3, one.gradient, gradient[0]);
+    return energy;
 }
 
 // Multiplies the negative eigenvalues of [[a[0], a[1]], [a[1], a[2]]] by (1 - clamp). The projector on the
 // eigenvector of the smaller eigenvalue l2 is (l1 I - a) / (l1 - l2).
-static void scale_negative(double clamp, double a[3]) {
+RUGA_WIDE_PART void scale_negative(double clamp, double a[3]) {
     double mean = 0.5 * (a[0] + a[2]);
     double half = 0.5 * (a[0] - a[2]);
     double radius = sqrt(half * half + a[1] * a[1]);
     double l1 = mean + radius, l2 = mean - radius;
-    if (l2 >= 0) {
-        return;
+    double least = l2 < 0 ? l2 : 0, part = clamp * least / (l1 - l2);
+    bool both = l1 <= 0 && l2 < 0;
+    double keep = both ? 1 - clamp : 1, s = both || least == 0 ? 0 : part;
+    a[0] = keep * a[0] - s * (l1 - a[0]);
+    a[1] = keep * a[1] + s * a[1];
+    a[2] = keep * a[2] - s * (l1 - a[2]);
+}
+
+RUGA_WIDE_PART void set_block(double (*left)[3], double (*right)[3], const double s[3], const double n[2],
+                              const double other[2], double (*block)[RUGA_LANES], int lane) {
+    double geometric =
+        n[0] * (s[0] * other[0] + s[1] * other[1]) + n[1] * (s[1] * other[0] + s[2] * other[1]);
+    for (int k = 0; k < 9; k++) {
+        int r = k / 3, c = k % 3;
+        double sum = left[0][r] * right[0][c] + left[1][r] * right[1][c] + left[2][r] * right[2][c];
+        block[k][lane] = r == c ? sum + geometric : sum;
     }
-    if (l1 <= 0) {
-        a[0] *= 1 - clamp;
-        a[1] *= 1 - clamp;
-        a[2] *= 1 - clamp;
-        return;
+}
+
+RUGA_WIDE_PART void set_hessians(ruga_membrane kind, double poisson, int count,
+                                 const rest_lanes* restrict lanes, double clamp,
+                                 ruga_triangle_lanes* restrict t) {
+    for (int lane = 0; lane < count; lane++) {
+        ruga_membrane_rest rest;
+        point p;
+        evaluate_lane(kind, poisson, lanes, t, lane, &rest, &p);
+        double* s = p.stress;
+        scale_negative(clamp, s);
+        double q[3] = {rest.stretch - p.z[0] * s[0], rest.stretch * poisson, rest.stretch - p.z[1] * s[2]};
+        scale_negative(clamp, q);
+        // Derivatives of e_u, e_v and w_u.w_v with respect to each corner; `left` holds q times the first two
+        // and the shear stiffness times the last.
+        double right[2][3][3], left[2][3][3], (*n)[2] = rest.slope;
+        for (int i = 0; i < 2; i++) {
+            for (int c = 0; c < 3; c++) {
+                double eu = n[i][0] * p.f[0][c], ev = n[i][1] * p.f[1][c];
+                right[i][0][c] = eu;
+                right[i][1][c] = ev;
+                right[i][2][c] = n[i][0] * p.w[1][c] + n[i][1] * p.w[0][c];
+                left[i][0][c] = q[0] * eu + q[1] * ev;
+                left[i][1][c] = q[1] * eu + q[2] * ev;
+                left[i][2][c] = rest.shear * right[i][2][c];
+            }
+        }
+        set_block(left[0], right[0], s, n[0], n[0], t->block[0], lane);
+        set_block(left[1], right[0], s, n[1], n[0], t->block[1], lane);
+        set_block(left[1], right[1], s, n[1], n[1], t->block[2], lane);
     }
-    double s = clamp * l2 / (l1 - l2);
-    a[0] -= s * (l1 - a[0]);
-    a[1] += s * a[1];
-    a[2] -= s * (l1 - a[2]);
+}
+
+RUGA_WIDE static void set_hessians_of_kind(ruga_membrane kind, double poisson, int count,
+                                           const rest_lanes* rest, double clamp, ruga_triangle_lanes* t) {
+    if (kind == RUGA_MEMBRANE_BARAFF_WITKIN) {
+        set_hessians(RUGA_MEMBRANE_BARAFF_WITKIN, poisson, count, rest, clamp, t);
+    } else {
+        set_hessians(RUGA_MEMBRANE_STVK, poisson, count, rest, clamp, t);
+    }
+}
+
+void ruga_membrane_lanes_hessian(ruga_membrane kind, double poisson, int count,
+                                 const ruga_membrane_rest* rest, double clamp,
+                                 ruga_triangle_lanes* triangles) {
+    rest_lanes lanes;
+    load_rest(count, rest, &lanes);
+    set_hessians_of_kind(kind, poisson, count, &lanes, clamp, triangles);
+}
+
+void ruga_triangle_lanes_blocks(int count, const ruga_triangle_lanes* t,
+                                double (*block)[RUGA_TRIANGLE_BLOCKS][9]) {
+    for (int i = 0; i < count; i++) {
+        double(*b)[9] = block[i];
+        for (int k = 0; k < 9; k++) {
+            int transposed = 3 * (k % 3) + k / 3;
+            double b11 = t->block[0][k][i], b21 = t->block[1][k][i], b12 = t->block[1][transposed][i];
+            double b22 = t->block[2][k][i];
+            b[0][k] = (b11 + b22) + (b21 + b12);
+            b[1][k] = b11;
+            b[2][k] = b22;
+            b[3][k] = -(b11 + b12);
+            b[4][k] = -(b21 + b22);
+            b[5][k] = b21;
+        }
+    }
 }
 
 void ruga_membrane_hessian(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
                            const double* const x[3], double clamp, double block[RUGA_TRIANGLE_BLOCKS][9]) {
-    point p;
-    evaluate(kind, poisson, rest, x, &p);
-    double* s = p.stress;
-    scale_negative(clamp, s);
-    double q[3] = {rest->stretch - p.z[0] * s[0], rest->stretch * poisson, rest->stretch - p.z[1] * s[2]};
-    scale_negative(clamp, q);
-    // Derivatives of e_u, e_v and w_u.w_v with respect to each corner; `left` holds q times the first two and
-    // the shear stiffness times the last.
-    double n[3][2], right[3][3][3], left[3][3][3];
-    for (int a = 0; a < 2; a++) {
-        n[1][a] = rest->slope[0][a];
-        n[2][a] = rest->slope[1][a];
-        n[0][a] = -(n[1][a] + n[2][a]);
-    }
-    for (int i = 0; i < 3; i++) {
-        for (int c = 0; c < 3; c++) {
-            double eu = n[i][0] * p.f[0][c], ev = n[i][1] * p.f[1][c];
-            right[i][0][c] = eu;
-            right[i][1][c] = ev;
-            right[i][2][c] = n[i][0] * p.w[1][c] + n[i][1] * p.w[0][c];
-            left[i][0][c] = q[0] * eu + q[1] * ev;
-            left[i][1][c] = q[1] * eu + q[2] * ev;
-            left[i][2][c] = rest->shear * right[i][2][c];
-        }
-    }
-    for (int b = 0; b < RUGA_TRIANGLE_BLOCKS; b++) {
-        int i = ruga_triangle_block_corner[b][0], j = ruga_triangle_block_corner[b][1];
-        for (int r = 0; r < 3; r++) {
-            for (int c = 0; c < 3; c++) {
-                block[b][3 * r + c] = left[i][0][r] * right[j][0][c] + left[i][1][r] * right[j][1][c] +
-                                      left[i][2][r] * right[j][2][c];
-            }
-        }
-        double geometric =
-            n[i][0] * (s[0] * n[j][0] + s[1] * n[j][1]) + n[i][1] * (s[1] * n[j][0] + s[2] * n[j][1]);
-        block[b][0] += geometric;
-        block[b][4] += geometric;
-        block[b][8] += geometric;
-    }
+    ruga_triangle_lanes one;
+    ruga_triangle_lanes_set(&one, x);
+    ruga_membrane_lanes_hessian(kind, poisson, 1, rest, clamp, &one);
+    ruga_triangle_lanes_blocks(1, &one, (double(*)[RUGA_TRIANGLE_BLOCKS][9])block);
 }
 
 // e_a' = f_a.w_a', (w_u.w_v)' = w_u'.w_v + w_u.w_v', w' as w is of x.

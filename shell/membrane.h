@@ -5,6 +5,7 @@
 #ifndef RUGA_SHELL_MEMBRANE_H
 #define RUGA_SHELL_MEMBRANE_H
 
+#include "core/lanes.h"
 #include "core/status.h"
 #include "ruga/types.h"
 
@@ -31,7 +32,29 @@ double ruga_membrane_grown_length(const double* const x[3], const double edge[3]
 double ruga_membrane_energy(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
                             const double* const x[3], double gradient[3][3]);
 
-// Sets the lower blocks, row by row, of the Hessian; clamp as in ruga_shell_energy.
+// Triangles side by side.
+typedef struct ruga_triangle_lanes {
+    double x[3][3][RUGA_LANES];
+    double gradient[3][3][RUGA_LANES];
+    double block[3][9][RUGA_LANES]; // of the Hessian, row by row: corners (1, 1), (2, 1) and (2, 2)
+} ruga_triangle_lanes;
+
+void ruga_triangle_lanes_set(ruga_triangle_lanes* one, const double* const x[3]);
+
+// The same for `count` of them, rest [count]; energy [count] is set.
+void ruga_membrane_lanes_energy(ruga_membrane kind, double poisson, int count, const ruga_membrane_rest* rest,
+                                ruga_triangle_lanes* triangles, double* energy);
+
+// Sets the blocks; clamp as in ruga_shell_energy.
+void ruga_membrane_lanes_hessian(ruga_membrane kind, double poisson, int count,
+                                 const ruga_membrane_rest* rest, double clamp,
+                                 ruga_triangle_lanes* triangles);
+
+// The lower blocks, those of corner 0 from the others: no energy changes where all corners move alike.
+void ruga_triangle_lanes_blocks(int count, const ruga_triangle_lanes* triangles,
+                                double (*block)[RUGA_TRIANGLE_BLOCKS][9]);
+
+// Sets the lower blocks of one triangle.
 void ruga_membrane_hessian(ruga_membrane kind, double poisson, const ruga_membrane_rest* rest,
                            const double* const x[3], double clamp, double block[RUGA_TRIANGLE_BLOCKS][9]);
 

@@ -92,7 +92,7 @@ static void note_hinge(ruga_shell* shell, int f, int vertex, int h, int side) {
                 shell->next_hinge[h][side] = shell->triangle_hinge[f][i];
             }
             shell->triangle_hinge[f][i] = h;
-            shell->hinge_side[h][side] = 3 * f + i;
+            shell->hinge_side[h][side] = f;
         }
     }
 }
@@ -334,7 +334,6 @@ static ruga_status set_gathers(ruga_shell* shell) {
     int triangles = shell->triangle_count, hinges = shell->hinge_count;
     RUGA_TRY(
         ruga_gather_create(shell->vertex_count, 3 * triangles, shell->triangle[0], &shell->vertex_triangle));
-    RUGA_TRY(ruga_gather_create(shell->vertex_count, 4 * hinges, shell->hinge[0], &shell->vertex_hinge));
     RUGA_TRY(block_gather_create(shell, triangles, 3, shell->triangle[0], &shell->block_triangle));
     if (!shell->has_directors) {
         return block_gather_create(shell, hinges, 4, shell->hinge[0], &shell->block_hinge);
@@ -365,13 +364,16 @@ static ruga_status allocate(ruga_shell* shell) {
     RUGA_TRY(RUGA_NEW_ZERO(shell->vertex_mass, shell->vertex_count));
     RUGA_TRY(RUGA_NEW(shell->triangle_gradient, triangles));
     RUGA_TRY(RUGA_NEW(shell->triangle_block, triangles));
-    RUGA_TRY(RUGA_NEW(shell->hinge_gradient, hinges));
     RUGA_TRY(RUGA_NEW(shell->hinge_moment, hinges));
-    RUGA_TRY(RUGA_NEW(shell->hinge_angle, hinges));
+    RUGA_TRY(RUGA_NEW(shell->hinge_bend, hinges));
+    if (shell->has_directors) {
+        RUGA_TRY(RUGA_NEW(shell->hinge_gradient, hinges));
+        RUGA_TRY(RUGA_NEW(shell->hinge_angle, hinges));
+    } else {
+        RUGA_TRY(RUGA_NEW(shell->hinge_product, hinges));
+    }
     if (shell->thickness_power != 0) {
         RUGA_TRY(RUGA_NEW(shell->thickness, triangles));
-        RUGA_TRY(RUGA_NEW(shell->thickness_gradient, triangles));
-        RUGA_TRY(RUGA_NEW(shell->hinge_pull, hinges));
     }
     int most = triangles > hinges ? triangles : hinges;
     return RUGA_NEW(shell->partial, ruga_chunk_count(most, RUGA_SHELL_CHUNK));
@@ -430,13 +432,12 @@ void ruga_shell_destroy(ruga_shell** shell) {
     ruga_release(s->next_hinge);
     ruga_release(s->rest_area);
     ruga_release(s->thickness);
-    ruga_release(s->thickness_gradient);
-    ruga_release(s->hinge_pull);
+    ruga_release(s->hinge_bend);
+    ruga_release(s->hinge_product);
     ruga_release(s->vertex_mass);
     ruga_sparse_clear(&s->pattern);
     ruga_release(s->block_start);
     ruga_gather_clear(&s->vertex_triangle);
-    ruga_gather_clear(&s->vertex_hinge);
     ruga_gather_clear(&s->block_triangle);
     ruga_gather_clear(&s->block_hinge);
     ruga_gather_clear(&s->block_patch);

@@ -16,10 +16,12 @@
 //     d|c|^2/dx_i = 2 c x d_i,
 //     d2|c|^2/dx_i dx_j v = 2 [(d_j x v) x d_i + c x v e_ij] = 2 [(d_i.d_j) v - d_j (d_i.v) + e_ij c x v],
 // e_ij = 1 for j = i + 2, -1 for j = i + 1 and 0 for j = i, and s = r^-p has
-//     ds = -p s/r dr,  d2s = -p s/r d2r + p (p + 1) s/r^2 dr dr^T.
+//     ds/dx_i = z c x d_i,  z = -2 p s / |c|^2,
+//     d2s = z/2 d2|c|^2 - 2 (p + 1) z / |c|^2 (c x d_i) (c x d_j)^T.
 #include "shell/thickness.h"
 
 #include "core/vec3.h"
+#include "core/wide.h"
 
 // A triangle crushed below a tenth of its area keeps the stiffness it had there, so that collapsed ones give
 // finite numbers.
@@ -29,50 +31,92 @@ double ruga_thickness_power(double poisson) {
     return poisson / (1 - poisson);
 }
 
-// r, c and the opposite edges.
-static double area_ratio_square(double rest_area, const double* const x[3], double c[3], double d[3][3]) {
-    for (int i = 0; i < 3; i++) {
-        ruga_subtract(x[(i + 2) % 3], x[(i + 1) % 3], d[i]);
+// From corner 0 to the others.
+RUGA_WIDE_PART void edges(const ruga_triangle_lanes* t, int i, double u[3], double v[3]) {
+    for (int c = 0; c < 3; c++) {
+        u[c] = t->x[1][c][i] - t->x[0][c][i];
+        v[c] = t->x[2][c][i] - t->x[0][c][i];
     }
-    ruga_triangle_normal(x[0], x[1], x[2], c);
-    return ruga_dot(c, c) / (4 * rest_area * rest_area);
 }
 
-double ruga_thickness_stiffness(double power, double rest_area, const double* const x[3],
-                                double gradient[3][3]) {
-    double c[3], d[3][3], r = area_ratio_square(rest_area, x, c, d);
-    bool crushed = !(r > CRUSHED_SQUARE);
-    double s = pow(crushed ? CRUSHED_SQUARE : r, -power);
-    double slope = crushed ? 0 : -power * s / r / (2 * rest_area * rest_area);
-    for (int i = 0; i < 3; i++) {
-        ruga_cross(c, d[i], gradient[i]);
+// |c|^2, and r above the floor.
+RUGA_WIDE static void measure(int count, const double* restrict rest_area,
+                              const ruga_triangle_lanes* restrict t, double* restrict square,
+                              double* restrict ratio) {
+    for (int i = 0; i < count; i++) {
+        double u[3], v[3], c[3];
+        edges(t, i, u, v);
+        ruga_cross(u, v, c);
+        square[i] = ruga_dot(c, c);
+        double r = square[i] / (4 * rest_area[i] * rest_area[i]);
+        ratio[i] = r > CRUSHED_SQUARE ? r : CRUSHED_SQUARE;
+    }
+}
+
+void ruga_thickness_lanes_stiffness(int count, double power, const double* rest_area,
+                                    const ruga_triangle_lanes* t, double (*thickness)[2]) {
+    double square[RUGA_LANES] = {0}, ratio[RUGA_LANES] = {0}, stiffness[RUGA_LANES] = {0};
+    measure(count, rest_area, t, square, ratio);
+    ruga_lanes_power(count, ratio, -power, stiffness);
+    for (int i = 0; i < count; i++) {
+        thickness[i][0] = stiffness[i];
+        thickness[i][1] = ratio[i] > CRUSHED_SQUARE ? -2 * power * stiffness[i] / square[i] : 0;
+    }
+}
+
+RUGA_WIDE static void add_gradients(int count, const double* restrict scale,
+                                    ruga_triangle_lanes* restrict t) {
+    for (int i = 0; i < count; i++) {
+        double u[3], v[3], c[3], along_u[3], along_v[3];
+        edges(t, i, u, v);
+        ruga_cross(u, v, c);
+        ruga_cross(c, u, along_u);
+        ruga_cross(c, v, along_v);
         for (int k = 0; k < 3; k++) {
-            gradient[i][k] *= slope;
+            t->gradient[0][k][i] += scale[i] * (along_v[k] - along_u[k]);
+            t->gradient[1][k][i] -= scale[i] * along_v[k];
+            t->gradient[2][k][i] += scale[i] * along_u[k];
         }
     }
-    return s;
 }
 
-void ruga_thickness_add_hessian(double power, double rest_area, const double* const x[3], double scale,
-                                double block[RUGA_TRIANGLE_BLOCKS][9]) {
-    double c[3], d[3][3], g[3][3], r = area_ratio_square(rest_area, x, c, d);
-    if (!(r > CRUSHED_SQUARE)) {
-        return;
+void ruga_thickness_lanes_add(int count, const double* scale, ruga_triangle_lanes* triangles) {
+    add_gradients(count, scale, triangles);
+}
+
+RUGA_WIDE_PART void add_block(const double d[3], const double other_d[3], const double skew[9],
+                              const double g[3], const double other_g[3], double first, double second,
+                              double (*block)[RUGA_LANES], int lane) {
+    double dot = ruga_dot(d, other_d);
+    for (int k = 0; k < 9; k++) {
+        int row = k / 3, column = k % 3;
+        double part = (row == column ? dot : skew[k]) - other_d[row] * d[column];
+        block[k][lane] += first * part + second * g[row] * other_g[column];
     }
-    double unit = 1 / (2 * rest_area * rest_area); // dr = unit c x d
-    double s = scale * pow(r, -power), first = -power * s / r * unit;
-    double second = power * (power + 1) * s / (r * r) * unit * unit;
-    const double skew[9] = {0, -c[2], c[1], c[2], 0, -c[0], -c[1], c[0], 0}; // v -> c x v
-    for (int i = 0; i < 3; i++) {
-        ruga_cross(c, d[i], g[i]);
-    }
-    for (int b = 0; b < RUGA_TRIANGLE_BLOCKS; b++) {
-        int i = ruga_triangle_block_corner[b][0], j = ruga_triangle_block_corner[b][1];
-        double dot = ruga_dot(d[i], d[j]), e = i == j ? 0 : j == (i + 2) % 3 ? 1 : -1;
-        for (int k = 0; k < 9; k++) {
-            int row = k / 3, column = k % 3;
-            block[b][k] += first * ((row == column) * dot - d[j][row] * d[i][column] + e * skew[k]) +
-                           second * g[i][row] * g[j][column];
+}
+
+RUGA_WIDE static void add_hessians(int count, double power, const double* restrict scale,
+                                   ruga_triangle_lanes* restrict t) {
+    for (int i = 0; i < count; i++) {
+        double u[3], v[3], c[3], g[2][3], d[2][3], square;
+        edges(t, i, u, v);
+        ruga_cross(u, v, c);
+        square = ruga_dot(c, c);
+        for (int k = 0; k < 3; k++) {
+            d[0][k] = -v[k];
+            d[1][k] = u[k];
         }
+        ruga_cross(c, d[0], g[0]);
+        ruga_cross(c, d[1], g[1]);
+        double second = -2 * (power + 1) * scale[i] / (square > 0 ? square : 1);
+        const double none[9] = {0}, skew[9] = {0, -c[2], c[1], c[2], 0, -c[0], -c[1], c[0], 0}; // v -> c x v
+        add_block(d[0], d[0], none, g[0], g[0], scale[i], second, t->block[0], i);
+        add_block(d[1], d[0], skew, g[1], g[0], scale[i], second, t->block[1], i);
+        add_block(d[1], d[1], none, g[1], g[1], scale[i], second, t->block[2], i);
     }
+}
+
+void ruga_thickness_lanes_add_hessian(int count, double power, const double* scale,
+                                      ruga_triangle_lanes* triangles) {
+    add_hessians(count, power, scale, triangles);
 }

@@ -10,12 +10,15 @@
 // p of thickness.c.
 double ruga_thickness_power(double poisson);
 
-// Returns s, and sets its gradient for the three corners. rest_area is that after growth.
-double ruga_thickness_stiffness(double power, double rest_area, const double* const x[3],
-                                double gradient[3][3]);
+// Sets the s of triangles side by side, and the slope z; rest_area [count] is that after growth.
+void ruga_thickness_lanes_stiffness(int count, double power, const double* rest_area,
+                                    const ruga_triangle_lanes* triangles, double (*thickness)[2]);
 
-// Adds `scale` times the Hessian of s to the lower blocks of a triangle's 9 x 9 matrix.
-void ruga_thickness_add_hessian(double power, double rest_area, const double* const x[3], double scale,
-                                double block[RUGA_TRIANGLE_BLOCKS][9]);
+// Adds scale[i] / z times the gradient of s to the triangles' gradients.
+void ruga_thickness_lanes_add(int count, const double* scale, ruga_triangle_lanes* triangles);
+
+// Adds scale[i] / z times the Hessian of s to the triangles' blocks.
+void ruga_thickness_lanes_add_hessian(int count, double power, const double* scale,
+                                      ruga_triangle_lanes* triangles);
 
 #endif

@@ -18,6 +18,8 @@
 #include <string.h>
 
 static const double LEAST_FRACTION = 0.01;
+static const double RIGID = 1e3; // E h times a mean edge
+static const double ON_A_FRAME = 1e-9;
 
 void ruga_creases_destroy(ruga_creases** creases) {
     ruga_creases* c = *creases;
@@ -32,8 +34,8 @@ void ruga_creases_destroy(ruga_creases** creases) {
     ruga_cut_clear(&c->cut);
     ruga_sewing_clear(&c->sewing);
     ruga_connectivity_clear(&c->shown);
-    void* const owned[] = {c->law,  c->segment, c->hinge,    c->stiffness, c->drawn, c->rest,
-                           c->area, c->share,   c->fraction, c->mass,      c->bend,  c->pair,    c->whole};
+    void* const owned[] = {c->law,  c->segment, c->hinge,    c->stiffness, c->drawn, c->rest,     c->area,
+                           c->share, c->fraction, c->mass, c->bend,      c->pair,  c->steepness};
     for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
         ruga_release(owned[i]);
     }
@@ -92,7 +94,7 @@ static ruga_status check_def(int index, const ruga_crease_def* def) {
 
 static ruga_status copy_law(const ruga_crease_def* def, ruga_crease_law* law) {
     *law = (ruga_crease_law){
-        .start = def->start > 0 ? def->start : -INFINITY, .yield = def->yield, .rate = def->rate, .hardening = def->hardening, .assignment = def->assignment};
+        .yield = def->yield, .rate = def->rate, .hardening = def->hardening, .assignment = def->assignment};
     RUGA_TRY(RUGA_NEW(law->keys, def->key_count));
     for (int k = 0; k < def->key_count; k++) {
         law->keys[k] = def->keys[k];
@@ -113,7 +115,7 @@ static bool varies(int count, const double* values) {
     return false;
 }
 
-static ruga_status add_curve(int index, const ruga_crease_def* def, const ruga_mesh* mesh,
+static ruga_status add_curve(int index, const ruga_crease_def* def, int stage, const ruga_mesh* mesh,
                              const ruga_connectivity* edges, ruga_curves* curves) {
     int points = def->path == RUGA_CREASE_EDGES ? def->vertex_count : def->point_count;
     const ruga_curve style = {.kind = def->kind,
@@ -121,7 +123,8 @@ static ruga_status add_curve(int index, const ruga_crease_def* def, const ruga_m
                               .varies =
                                   varies(points, def->point_rest) || varies(points, def->point_stiffness),
                               .closed = def->closed,
-                              .label = index};
+                              .label = index,
+                              .stage = stage};
     switch (def->path) {
     case RUGA_CREASE_UV:
         return ruga_curves_add_uv(curves, &style, mesh, points, (const double(*)[2])def->points);
@@ -134,18 +137,40 @@ static ruga_status add_curve(int index, const ruga_crease_def* def, const ruga_m
     }
 }
 
-static ruga_status add_curves(int count, const ruga_crease_def* defs, const ruga_mesh* mesh,
+static ruga_status add_curves(int count, const ruga_crease_def* defs, const int* stage, const ruga_mesh* mesh,
                               const ruga_connectivity* edges, ruga_creases* c, ruga_curves* curves) {
     for (int i = 0; i < count; i++) {
         RUGA_TRY(check_def(i, &defs[i]));
         c->law_count = i + 1;
         RUGA_TRY(copy_law(&defs[i], &c->law[i]));
-        ruga_status status = add_curve(i, &defs[i], mesh, edges, curves);
+        ruga_status status = add_curve(i, &defs[i], stage[i], mesh, edges, curves);
         if (status != RUGA_OK) {
             return status == RUGA_BAD_INPUT ? ruga_fail_prefix(status, "creases.%d", i) : status;
         }
     }
     return RUGA_OK;
+}
+
+static double frames_to(double start, double step) {
+    double frames = start / step, whole = round(frames);
+    return fabs(frames - whole) <= ON_A_FRAME * fmax(whole, 1) ? whole : frames;
+}
+
+int ruga_creases_stages(int count, const ruga_crease_def* defs, double step, int* stage, double* end) {
+    int stages = 0;
+    memset(stage, 0, (size_t)count * sizeof *stage);
+    for (double last = 0;; stages++) {
+        double next = INFINITY;
+        for (int i = 0; i < count; i++) {
+            double own = frames_to(defs[i].start, step);
+            stage[i] += own > last;
+            next = own > last ? fmin(next, own) : next;
+        }
+        if (isinf(next)) {
+            return stages;
+        }
+        last = end[stages] = next;
+    }
 }
 
 // ---- pieces --------------------------------------------------------------------------------------------
@@ -238,7 +263,7 @@ static ruga_status set_hinges(ruga_creases* c, const ruga_crease_def* defs, cons
     RUGA_TRY(RUGA_NEW(c->hinge, count));
     RUGA_TRY(RUGA_NEW_ZERO(c->stiffness, count));
     RUGA_TRY(RUGA_NEW(c->drawn, count));
-    RUGA_TRY(RUGA_NEW_ZERO(c->whole, count));
+    RUGA_TRY(RUGA_NEW_ZERO(c->steepness, count));
     RUGA_TRY(RUGA_NEW(c->rest, count));
     RUGA_TRY(RUGA_NEW(c->pair, (RUGA_HINGE_NODES * (RUGA_HINGE_NODES - 1) / 2) * (size_t)count));
     RUGA_TRY_DONE(RUGA_NEW(made, count));
@@ -255,10 +280,14 @@ static ruga_status set_hinges(ruga_creases* c, const ruga_crease_def* defs, cons
         c->segment_count = fold ? out : c->segment_count;
     }
     for (int h = 0; h < count; h++) {
+        double slope[RUGA_HINGE_NODES][3];
         c->hinge[h] = made[c->segment[h]];
-        c->drawn[h] = c->rest[h] = ruga_hinge_measure(&c->hinge[h], x, NULL, NULL);
+        c->drawn[h] = c->rest[h] = ruga_hinge_measure(&c->hinge[h], x, NULL, slope);
         if (h < c->segment_count) {
             set_fold(c, h, defs, curves);
+        }
+        for (int i = 0; i < RUGA_HINGE_NODES; i++) {
+            c->steepness[h] += ruga_dot(slope[i], slope[i]);
         }
         for (int i = 1; i < RUGA_HINGE_NODES; i++) {
             for (int j = 0; j < i; j++, c->pair_count++) {
@@ -273,34 +302,41 @@ done:
     return status;
 }
 
-// k = l / (A1 / D1 + A2 / D2) for each length, A the material on both sides: as in a mesh that conforms.
+// k = l / (A1 / D1 + A2 / D2) for each length, A the material on both sides: as in a mesh that conforms. A
+// fold is no stiffer than 1,000 times E h times an edge: no panel that is strained by less than 1 % can turn
+// that by 1e-5 rad, and beyond it the panels' own forces drown in the hinge's round-off.
 void ruga_creases_set_bending(ruga_creases* c, const ruga_shell_material* material) {
+    const double edge = ruga_mesh_mean_edge(&c->raster.mesh);
     for (int h = 0; h < c->hinge_count; h++) {
         const ruga_segment* segment = &c->cut.segment[c->segment[h]];
-        double softness = 0;
+        double softness = 0, most = 0;
         for (int side = 0; side < 2; side++) {
             int p = segment->piece[side];
             const ruga_cut_piece* piece = &c->cut.piece[p];
             softness += piece->fraction * ruga_mesh_triangle_area(&c->raster.mesh, piece->triangle) /
                         ruga_shell_material_bending(material, p);
+            most = fmax(most, RIGID * edge * ruga_shell_material_young(material, p) *
+                                  ruga_shell_material_thickness(material, p));
         }
-        c->whole[h] = segment->length / softness;
-        c->stiffness[h] = h < c->segment_count ? c->stiffness[h] : c->whole[h];
+        c->stiffness[h] = h < c->segment_count ? fmin(c->stiffness[h], most) : segment->length / softness;
+        c->answer = hypot(c->answer, c->stiffness[h] * segment->length * c->steepness[h]);
     }
 }
 
 // ---- the whole -----------------------------------------------------------------------------------------
 
-ruga_status ruga_creases_create(int count, const ruga_crease_def* defs, const ruga_mesh* mesh,
-                                const ruga_connectivity* connectivity, ruga_creases** creases) {
+ruga_status ruga_creases_create(int count, const ruga_crease_def* defs, const int* stage, int now,
+                                const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                ruga_creases** creases) {
     ruga_status status = RUGA_OK;
-    const ruga_raster_def how = ruga_default_raster_def();
+    ruga_raster_def how = ruga_default_raster_def();
     ruga_curves curves = {0};
     ruga_creases* c = NULL;
     *creases = NULL;
+    how.stage = now;
     RUGA_TRY(RUGA_NEW_ZERO(c, 1));
     RUGA_TRY_DONE(RUGA_NEW_ZERO(c->law, count));
-    RUGA_TRY_DONE(add_curves(count, defs, mesh, connectivity, c, &curves));
+    RUGA_TRY_DONE(add_curves(count, defs, stage, mesh, connectivity, c, &curves));
     status = ruga_raster_create(mesh, &curves, &how, &c->raster);
     if (status == RUGA_BAD_INPUT) {
         status = ruga_fail_prefix(status, "creases");
@@ -372,7 +408,8 @@ ruga_status ruga_creases_edges(const ruga_mesh* nodes, ruga_connectivity* edges)
     ruga_status status = RUGA_OK;
     int halves = 3 * nodes->triangle_count, (*pair)[2] = NULL;
     ruga_sparse lower = {0};
-    *edges = (ruga_connectivity){.vertex_count = nodes->vertex_count, .triangle_count = nodes->triangle_count};
+    *edges =
+        (ruga_connectivity){.vertex_count = nodes->vertex_count, .triangle_count = nodes->triangle_count};
     RUGA_TRY_DONE(RUGA_NEW(pair, halves));
     for (int k = 0; k < halves; k++) {
         pair[k][0] = nodes->triangle[k];
@@ -504,8 +541,16 @@ int ruga_crease_law_of(const ruga_creases* c, int hinge) {
     return c->raster.curve[c->hinge[hinge].curve].label;
 }
 
-bool ruga_crease_is_there(const ruga_creases* c, int hinge, double time) {
-    return time >= c->law[ruga_crease_law_of(c, hinge)].start;
+double ruga_creases_shown_angle(const ruga_creases* c, int hinge, const double* shown) {
+    const int* end = c->cut.segment[c->segment[hinge]].end;
+    int e = ruga_edge_between(&c->shown, end[0], end[1]);
+    const double* x[4];
+    RUGA_ASSERT(e >= 0);
+    for (int i = 0; i < 2; i++) {
+        x[i] = shown + 3 * (size_t)c->shown.edge[e][i];
+        x[2 + i] = shown + 3 * (size_t)c->shown.edge_opposite[e][i];
+    }
+    return ruga_hinge_angle(x, NULL);
 }
 
 double ruga_crease_rest_at(const ruga_creases* c, int hinge, double time) {

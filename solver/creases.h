@@ -18,7 +18,6 @@
 typedef struct ruga_crease_law {
     int key_count;
     ruga_crease_key* keys;
-    double start; // s
     double yield, rate, hardening;
     char assignment;
     char* name;
@@ -36,9 +35,10 @@ typedef struct ruga_creases {
     int* segment;         // [hinges] index in cut.segment
     ruga_hinge* hinge;    // [hinges]
     double* stiffness;    // [hinges] N
-    double* whole;        // [hinges] N, that of the material without a crease
     double* drawn;        // [hinges] rad, the angle that the mesh has
     double* rest;         // [hinges] rad, before keys and plasticity
+    double* steepness;    // [hinges] 1/m^2, |grad theta|^2 as drawn
+    double answer;        // N/m, of all folds' forces to displacements: the root of the sum of their squares
     double* area;         // [nodes] m^2 of material
     double* share;        // [nodes] part of the vertex's area that this copy has
     double* fraction;     // [pieces] of the membrane
@@ -48,12 +48,16 @@ typedef struct ruga_creases {
     int pair_count;
 } ruga_creases;
 
-// `mesh` must have passed the doctor; material for the stiffness of auxiliary chords, by triangles of the
-// mesh where it varies. RUGA_BAD_INPUT names the crease ("creases.2: ...").
-ruga_status ruga_creases_create(int count, const ruga_crease_def* defs, const ruga_mesh* mesh,
-                                const ruga_connectivity* connectivity, ruga_creases** creases);
+// When creases come: stage [defs] of each, 0 = from the beginning, and end [defs], in frames of `step` s, of
+// stages but the last: their number is returned. What is a round-off from a frame is at it.
+int ruga_creases_stages(int count, const ruga_crease_def* defs, double step, int* stage, double* end);
+// With the creases up to stage `now`, on a mesh that is mended for all. `mesh` must have passed the doctor.
+// RUGA_BAD_INPUT names the crease ("creases.2: ...").
+ruga_status ruga_creases_create(int count, const ruga_crease_def* defs, const int* stage, int now,
+                                const ruga_mesh* mesh, const ruga_connectivity* connectivity,
+                                ruga_creases** creases);
 void ruga_creases_destroy(ruga_creases** creases);
-// Stiffness of auxiliary chords, and of the material where creases are, from the material of the pieces.
+// Stiffness of auxiliary chords, from the material of the pieces.
 void ruga_creases_set_bending(ruga_creases* creases, const ruga_shell_material* material);
 // The mesh of nodes and pieces.
 ruga_status ruga_creases_nodes(const ruga_creases* creases, ruga_mesh* nodes);
@@ -68,8 +72,8 @@ ruga_shell_cut ruga_creases_shell(const ruga_creases* creases);
 ruga_status ruga_creases_tie(const ruga_creases* creases, ruga_clusters* clusters);
 // What stretching of rest angles a crease's keys give at a time: angle + scale times rest.
 double ruga_crease_rest_at(const ruga_creases* creases, int hinge, double time);
-// Whether a crease is one at a time, and not yet material like that beside it.
-bool ruga_crease_is_there(const ruga_creases* creases, int hinge, double time);
+// The angle, in (-pi, pi], of the material that is shown, [vertices][3], at the segment of a hinge.
+double ruga_creases_shown_angle(const ruga_creases* creases, int hinge, const double* shown);
 // Number of the def that a hinge belongs to.
 int ruga_crease_law_of(const ruga_creases* creases, int hinge);
 

@@ -81,12 +81,12 @@ static void set_bend(const ruga_hinge* hinge, int bend[4]) {
     }
 }
 
-static double angle_of_bend(const int bend[4], const double* x, double gradient[4][3]) {
+static double angle_of_bend(const int bend[4], const double* x) {
     const double* at[4];
     for (int i = 0; i < 4; i++) {
         at[i] = x + 3 * (size_t)bend[i];
     }
-    return ruga_hinge_angle(at, gradient);
+    return ruga_hinge_angle(at, NULL);
 }
 
 static ruga_status make_bends(ruga_elastic* e, double rigidity, const double* rest) {
@@ -107,7 +107,7 @@ static ruga_status make_bends(ruga_elastic* e, double rigidity, const double* re
     for (int b = 0; b < e->bend_count; b++) {
         set_bend(&hinge[b], e->bend[b]);
         e->bend_stiffness[b] *= rigidity;
-        e->bend_rest[b] = angle_of_bend(e->bend[b], rest, NULL);
+        e->bend_rest[b] = angle_of_bend(e->bend[b], rest);
     }
 done:
     ruga_release(hinge);
@@ -215,13 +215,6 @@ void ruga_elastic_set_rest(ruga_elastic* e, const double* rest) {
     ruga_cloth_set_rest(&e->cloth, e->rest);
 }
 
-void ruga_elastic_set_stiffness(ruga_elastic* e, const double* stiffness) {
-    for (int h = 0; h < e->hinge_count; h++) {
-        double own = stiffness[e->segment[h]] * e->hinge[h].length;
-        e->stiffness[h] = e->hinge[h].curve >= 0 ? own : e->stiffness[h];
-    }
-}
-
 void ruga_elastic_start(ruga_elastic* e, const double* x) {
     for (int h = 0; h < e->hinge_count; h++) {
         e->angle[e->segment[h]] = ruga_hinge_measure(&e->hinge[h], x, NULL, NULL);
@@ -241,13 +234,16 @@ static void triangle_forces(int begin, int end, int chunk, void* context) {
     const pass* p = context;
     ruga_elastic* e = p->e;
     double energy = 0;
-    for (int t = begin; t < end; t++) {
-        const double* x[3];
-        for (int i = 0; i < 3; i++) {
-            x[i] = p->x + 3 * (size_t)e->triangle[t][i];
+    for (int t = begin; t < end; t += RUGA_LANES) {
+        ruga_triangle_lanes lanes;
+        double own[RUGA_LANES];
+        int count = ruga_lanes_from(t, end);
+        ruga_lanes_load(count, 3, e->triangle[t], p->x, lanes.x);
+        ruga_membrane_lanes_energy(e->def.skin.membrane, e->def.skin.poisson, count, e->membrane + t, &lanes, own);
+        ruga_lanes_store(count, 3, lanes.gradient, e->triangle_force[t][0]);
+        for (int i = 0; i < count; i++) {
+            energy += own[i];
         }
-        energy += ruga_membrane_energy(e->def.skin.membrane, e->def.skin.poisson, &e->membrane[t], x,
-                                       e->triangle_force[t]);
     }
     e->partial[chunk][0] = energy;
 }
@@ -256,11 +252,17 @@ static void bend_forces(int begin, int end, int chunk, void* context) {
     const pass* p = context;
     ruga_elastic* e = p->e;
     double energy = 0;
-    for (int b = begin; b < end; b++) {
-        double off =
-            ruga_angle_difference(angle_of_bend(e->bend[b], p->x, e->bend_gradient[b]), e->bend_rest[b]);
-        e->bend_moment[b] = e->bend_stiffness[b] * off;
-        energy += 0.5 * e->bend_moment[b] * off;
+    for (int b = begin; b < end; b += RUGA_LANES) {
+        ruga_hinge_lanes lanes;
+        int count = ruga_lanes_from(b, end);
+        ruga_lanes_load(count, 4, e->bend[b], p->x, lanes.x);
+        ruga_hinge_lanes_measure(count, &lanes);
+        ruga_lanes_store(count, 4, lanes.gradient, e->bend_gradient[b][0]);
+        for (int i = 0; i < count; i++) {
+            double off = ruga_angle_difference(lanes.angle[i], e->bend_rest[b + i]);
+            e->bend_moment[b + i] = e->bend_stiffness[b + i] * off;
+            energy += 0.5 * e->bend_moment[b + i] * off;
+        }
     }
     e->partial[chunk][0] = energy;
 }

@@ -52,8 +52,6 @@ ruga_status ruga_elastic_create(const ruga_elastic_def* def, ruga_elastic* elast
 void ruga_elastic_clear(ruga_elastic* elastic);
 // rest [segments], rad; entries of auxiliary chords are not looked at.
 void ruga_elastic_set_rest(ruga_elastic* elastic, const double* rest);
-// Stiffness of creases, [segments] N; only of those that had some when they were made.
-void ruga_elastic_set_stiffness(ruga_elastic* elastic, const double* stiffness);
 // Takes the angles of x as they are, in (-pi, pi]; afterwards they are followed from one force to the next.
 void ruga_elastic_start(ruga_elastic* elastic, const double* x);
 // force [nodes][3] is SET. The same bits for any number of threads.

@@ -185,9 +185,7 @@ static void yield(ruga_hinges* h, int k, double dt) {
 int ruga_hinges_begin(ruga_hinges* h, double time, double dt) {
     double most = 0;
     for (int k = 0; k < h->segments; k++) {
-        if (ruga_crease_is_there(h->creases, k, time - dt)) {
-            yield(h, k, dt);
-        }
+        yield(h, k, dt);
         h->from[k] = h->rest[k];
         h->goal[k] = ruga_crease_rest_at(h->creases, k, time) + h->set[k];
         most = fmax(most, fabs(h->goal[k] - h->from[k]));

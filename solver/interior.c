@@ -311,12 +311,11 @@ static void hold_skin_stiffness(ruga_interior* in, const ruga_sparse* k) {
 static ruga_status factor_preconditioner(ruga_interior* in, const double* q, const double* x) {
     const ruga_sparse* k = ruga_elasticity_pattern(in->elasticity);
     double energy;
-    ruga_shell_energies shell;
     ruga_sparse skin_matrix = *ruga_shell_pattern(in->skin->shell);
     skin_matrix.value = in->skin_stiffness;
     RUGA_TRY(ruga_elasticity_energy(in->elasticity, q, true, &energy, NULL, in->stiffness, NULL));
     add_inertia(in, in->stiffness);
-    RUGA_TRY(ruga_shell_energy(in->skin->shell, x, 1, &shell, NULL, in->skin_stiffness));
+    RUGA_TRY(ruga_shell_energy(in->skin->shell, x, 1, NULL, NULL, in->skin_stiffness));
     hold_skin_stiffness(in, &skin_matrix);
     RUGA_TRY(ruga_elasticity_add_embedded(in->elasticity, &skin_matrix, in->stiffness));
     double shift = 0;
@@ -585,7 +584,7 @@ ruga_status ruga_interior_paper_step(ruga_interior* in, double tolerance, double
     *result = (ruga_interior_result){0};
     RUGA_TRY(ruga_skin_energy(skin, x, &result->skin.terms, gradient));
     RUGA_TRY(surface_force(in, x, embedded, gradient, t));
-    RUGA_TRY(ruga_shell_energy(skin->shell, x, 0, &(ruga_shell_energies){0}, NULL, skin->stiffness));
+    RUGA_TRY(ruga_shell_energy(skin->shell, x, 0, NULL, NULL, skin->stiffness));
     if (skin->coupling) {
         ruga_shell_coupling(skin->shell, skin->coupling);
     }

@@ -6,9 +6,9 @@
 // D (Sylvester). Fronts are assembled from the matrix and the update matrices of their children, factored
 // (ldl_front.c), and hand on what is left: the update matrix and the columns without a stable pivot.
 //
-// Independent subtrees are tasks with memory of their own: an index list and panels of L, which only grow,
-// and a stack of update matrices. Which task a front belongs to depends on the matrix alone, and so do all
-// sums: the bits are the same for any number of threads.
+// Independent subtrees are tasks with memory of their own: an index list, panels of L, which only grow, and
+// what they hand up. Stacks of update matrices belong to threads. Which task a front belongs to depends on
+// the matrix alone, and so do all sums: the bits are the same for any number of threads.
 #include "solver/ldl_front.h"
 
 #include "core/memory.h"
@@ -27,8 +27,12 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
     for (int t = 0; f->memory && t <= f->symbolic.task_count; t++) {
         ruga_release(f->memory[t].factor);
         ruga_release(f->memory[t].index);
-        ruga_release(f->memory[t].stack);
+        ruga_release(f->memory[t].upward);
     }
+    for (int i = 0; i < f->stack_count; i++) {
+        ruga_release(f->stack[i].memory);
+    }
+    ruga_release(f->stack);
     ruga_release(f->memory);
     ruga_ldl_symbolic_clear(&f->symbolic);
     ruga_release(f->matrix.value);
@@ -64,6 +68,7 @@ static void list_children(ruga_ldl* f) {
         f->child[k] = -1;
     }
     for (int k = s->count - 1; k >= 0; k--) {
+        f->front[k].far = s->parent[k] >= 0 && !f->front[s->parent[k]].far;
         if (s->parent[k] >= 0) {
             f->sibling[k] = f->child[s->parent[k]];
             f->child[s->parent[k]] = k;
@@ -78,6 +83,7 @@ static void list_children(ruga_ldl* f) {
         if (s->top[k]) {
             f->front[k].task = s->task_count;
         }
+        f->front[k].upward = !s->top[k] && s->parent[k] >= 0 && s->top[s->parent[k]];
     }
 }
 
@@ -140,8 +146,11 @@ size_t ruga_ldl_bytes(const ruga_ldl* f) {
     bytes += ((size_t)f->gather_capacity + tasks * top) * sizeof(double) + (n + top) * sizeof(int);
     for (int t = 0; t <= f->symbolic.task_count; t++) {
         const task_memory* m = &f->memory[t];
-        bytes += m->factor_capacity * (f->single ? sizeof(float) : sizeof(double)) + m->stack_capacity +
+        bytes += m->factor_capacity * (f->single ? sizeof(float) : sizeof(double)) + m->upward_capacity +
                  m->index_capacity * sizeof(int);
+    }
+    for (int i = 0; i < f->stack_count; i++) {
+        bytes += f->stack[i].capacity;
     }
     return bytes;
 }
@@ -214,8 +223,26 @@ ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, si
     return RUGA_OK;
 }
 
-static ruga_status factor_front(ruga_ldl* f, int s) {
-    return f->in_single ? ruga_ldl_factor_front_single(f, s) : ruga_ldl_factor_front(f, s);
+size_t ruga_ldl_below_children(const ruga_ldl* f, int s) {
+    const front_record* r = &f->front[s];
+    size_t base = f->memory[r->task].stack_used[!r->far];
+    for (int c = f->child[s]; c >= 0; c = f->sibling[c]) {
+        base = f->front[c].task == r->task && f->front[c].update < base ? f->front[c].update : base;
+    }
+    return base;
+}
+
+static ruga_status factor_front(ruga_ldl* f, int s, front_stack* stack) {
+    return f->in_single ? ruga_ldl_factor_front_single(f, s, stack) : ruga_ldl_factor_front(f, s, stack);
+}
+
+// There are as many as threads at work. Which one it is changes no result.
+static front_stack* take_stack(ruga_ldl* f) {
+    int i = 0;
+    while (atomic_flag_test_and_set(&f->stack[i].taken)) {
+        i = (i + 1) % f->stack_count;
+    }
+    return &f->stack[i];
 }
 
 static void factor_tasks(int begin, int end, int chunk, void* context) {
@@ -224,11 +251,13 @@ static void factor_tasks(int begin, int end, int chunk, void* context) {
     const ruga_ldl_symbolic* s = &f->symbolic;
     for (int t = begin; t < end; t++) {
         task_memory* m = &f->memory[t];
+        front_stack* stack = take_stack(f);
         for (int k = s->task[t]; k < s->task[t + 1] && m->status == RUGA_OK; k++) {
             if (!s->top[k]) {
-                m->status = factor_front(f, k);
+                m->status = factor_front(f, k, stack);
             }
         }
+        atomic_flag_clear(&stack->taken);
     }
 }
 
@@ -236,30 +265,29 @@ static ruga_status factor_top(ruga_ldl* f) {
     const ruga_ldl_symbolic* s = &f->symbolic;
     for (int k = 0; k < s->count; k++) {
         if (s->top[k]) {
-            RUGA_TRY(factor_front(f, k));
+            RUGA_TRY(factor_front(f, k, f->stack));
         }
     }
     return RUGA_OK;
 }
 
 // What each task needs where no pivot is delayed: then nothing is allocated after the first factorisation,
-// and in the first one nothing is moved. The stacks are made for the precision of the work (make_stacks).
+// and in the first one nothing is moved.
 static ruga_status plan_tasks(ruga_ldl* f) {
     const ruga_ldl_symbolic* s = &f->symbolic;
     for (int k = 0; k < s->count; k++) {
         task_memory* m = &f->memory[f->front[k].task];
-        size_t own = (size_t)(s->pivot[k + 1] - s->pivot[k]), base = m->stack_used;
+        size_t own = (size_t)(s->pivot[k + 1] - s->pivot[k]), *used = m->stack_used;
         size_t below = s->row_start[k + 1] - s->row_start[k], update = ruga_update_size((int)below);
-        for (int c = f->child[k]; c >= 0; c = f->sibling[c]) {
-            if (f->front[c].task == f->front[k].task && f->front[c].update < base) {
-                base = f->front[c].update;
-            }
-        }
-        size_t peak = m->stack_used + ruga_front_size(s->top[k], own, below);
-        f->front[k].update = base;
-        m->stack_used = base + update;
+        size_t peak = used[0] + used[1] + ruga_front_size(s->top[k], own, below);
+        front_record* r = &f->front[k];
+        size_t* handed = ruga_ldl_used(m, r);
+        used[!r->far] = ruga_ldl_below_children(f, k);
+        r->update = *handed;
+        *handed += update;
         m->factor_used += ruga_ldl_stored_size((int)(own + below), (int)own);
         m->index_used += own + below;
+        peak -= r->upward ? update : 0;
         m->stack_peak = peak > m->stack_peak ? peak : m->stack_peak;
     }
     for (int t = 0; t <= s->task_count; t++) {
@@ -267,15 +295,25 @@ static ruga_status plan_tasks(ruga_ldl* f) {
         RUGA_TRY(ruga_ldl_make_room(&m->factor, &m->factor_capacity, m->factor_used,
                                     f->single ? sizeof(float) : sizeof(double)));
         RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used, sizeof(int)));
+        RUGA_TRY(ruga_ldl_make_room(&m->upward, &m->upward_capacity, m->upward_used * sizeof(double), 1));
     }
     return RUGA_OK;
 }
 
-static ruga_status make_stacks(ruga_ldl* f) {
-    size_t size = f->in_single ? sizeof(float) : sizeof(double);
-    for (int t = 0; t <= f->symbolic.task_count; t++) {
-        task_memory* m = &f->memory[t];
-        RUGA_TRY(ruga_ldl_make_room(&m->stack, &m->stack_capacity, m->stack_peak * size, 1));
+// The first serves the top, too, whose fronts are made when the tasks are done.
+static ruga_status reserve_stacks(ruga_ldl* f) {
+    int tasks = f->symbolic.task_count, count = ruga_threads() < tasks ? ruga_threads() : tasks;
+    size_t most = 1;
+    for (int t = 0; t < tasks; t++) {
+        most = f->memory[t].stack_peak > most ? f->memory[t].stack_peak : most;
+    }
+    size_t top = f->memory[tasks].stack_peak, first = top > most ? top : most;
+    RUGA_TRY(RUGA_RESERVE(f->stack, f->stack_capacity, count > 1 ? count : 1));
+    for (; f->stack_count < count || f->stack_count < 1; f->stack_count++) {
+        front_stack* stack = &f->stack[f->stack_count];
+        *stack = (front_stack){.taken = ATOMIC_FLAG_INIT};
+        RUGA_TRY(ruga_ldl_make_room(&stack->memory, &stack->capacity,
+                                    (f->stack_count ? most : first) * sizeof(double), 1));
     }
     return RUGA_OK;
 }
@@ -283,7 +321,7 @@ static ruga_status make_stacks(ruga_ldl* f) {
 static void start_tasks(ruga_ldl* f) {
     for (int t = 0; t <= f->symbolic.task_count; t++) {
         task_memory* m = &f->memory[t];
-        m->factor_used = m->index_used = m->stack_used = 0;
+        m->factor_used = m->index_used = m->stack_used[0] = m->stack_used[1] = m->upward_used = 0;
         m->positive = m->negative = m->zero = 0;
         m->entries = m->flops = 0;
         m->status = RUGA_OK;
@@ -321,7 +359,7 @@ ruga_status ruga_ldl_numeric(ruga_ldl* f, const double* values, bool in_single, 
         RUGA_TRY(plan_tasks(f));
         f->planned = true;
     }
-    RUGA_TRY(make_stacks(f));
+    RUGA_TRY(reserve_stacks(f));
     start_tasks(f);
     ruga_parallel_for(f->symbolic.task_count, 1, factor_tasks, f);
     for (int t = 0; t < f->symbolic.task_count; t++) {

@@ -6,39 +6,11 @@
 #ifndef RUGA_SOLVER_LDL_H
 #define RUGA_SOLVER_LDL_H
 
+#include "solver/ldl_symbolic.h"
 #include "solver/linear.h"
 
+#include <stdatomic.h>
 #include <stddef.h>
-
-// Unknowns are numbered by their step of elimination. Supernode s eliminates steps [pivot[s], pivot[s + 1]),
-// parents after children, each subtree contiguous. Its front holds these pivots and the rows below:
-// row[row_start[s] .. row_start[s + 1]), ascending steps.
-typedef struct ruga_ldl_symbolic {
-    int n;
-    int count;         // supernodes
-    int* order;        // [n] unknown eliminated at a step
-    int* pivot;        // [count + 1]
-    int* parent;       // [count] -1 = root
-    size_t* row_start; // [count + 1]
-    int* row;          // steps
-    int* place;        // like row: where in the parent's front
-    // Matrix entries of a front: value index and place in the front (row >= column, column a pivot).
-    int* entry_start; // [count + 1]
-    int* entry;       // [entries of the matrix]
-    int* entry_row;
-    int* entry_column;
-    // Work shared out: task t < task_count has the supernodes [task[t], task[t + 1]) not marked `top`;
-    // those marked are ancestors of several tasks and come after all of them, in ascending order.
-    int task_count;
-    int* task; // [task_count + 1]
-    bool* top; // [count]
-    double entries, flops;
-} ruga_ldl_symbolic;
-
-ruga_status ruga_ldl_analyse(const ruga_sparse* lower, int node_count, const int* node_start,
-                             const bool* last, ruga_ldl_symbolic* symbolic);
-void ruga_ldl_symbolic_clear(ruga_ldl_symbolic* symbolic);
-size_t ruga_ldl_symbolic_bytes(const ruga_ldl_symbolic* symbolic);
 
 // Tiles of columns of a front, and the blocks in which pivots are taken.
 enum { RUGA_FRONT_TILE = 96, RUGA_FRONT_BLOCK = 64 };
@@ -84,25 +56,40 @@ static inline size_t ruga_ldl_stored_size(int rows, int eliminated) {
     return ruga_ldl_tile(ruga_ldl_tiles(rows), strips, strips) + 2 * (size_t)eliminated;
 }
 
+// Where fronts are made, one for each thread at work: two stacks, from its two ends, fronts of odd depth on
+// the far one, so that what a front hands on is made in its place while its children's are on top of the
+// other. Per front, in double or float as the work is done: update of `below` rows, then (on the far stack
+// before it) delayed [late][late + below], peak [late]. Between the stacks the front that is made. Capacities
+// are in bytes.
+typedef struct front_stack {
+    void* memory;
+    size_t capacity;
+    atomic_flag taken;
+} front_stack;
+
 // Storage of a task. Places in it are kept as offsets, since it moves when delayed pivots make it grow.
 typedef struct task_memory {
     void* factor; // double or float, per front: ruga_ldl_stored_size
     size_t factor_used, factor_capacity;
     int* index; // per front: steps of its rows, pivots first
     size_t index_used, index_capacity;
-    // double or float, as the work is done, per front: update of `below` rows, delayed [late][late + below],
-    // peak [late]; above them the front that is made.
-    void* stack;
-    size_t stack_used, stack_peak, stack_capacity; // capacity in bytes
+    void* upward; // what its fronts hand on to those at the top, as on a front_stack
+    size_t upward_used, upward_capacity;
+    size_t stack_used[2], stack_peak; // of the front_stack that it works on, near and far
     int positive, negative, zero;
     double entries, flops;
     ruga_status status;
 } task_memory;
 
 typedef struct front_record {
-    size_t factor, index, update; // offsets in its task's memory
+    size_t factor, index, update; // offsets in its task's memory; `update` from its end of the stack
     int task, rows, full, eliminated;
+    bool far, upward; // handed on by the far stack; by `upward`
 } front_record;
+
+static inline size_t* ruga_ldl_used(task_memory* m, const front_record* r) {
+    return r->upward ? &m->upward_used : &m->stack_used[r->far];
+}
 
 typedef struct ruga_ldl {
     ruga_ldl_symbolic symbolic;
@@ -113,7 +100,9 @@ typedef struct ruga_ldl {
     int* sibling;        // [count]
     front_record* front; // [count]
     task_memory* memory; // [task_count + 1], the last one for the top
-    bool single;         // L is stored in single precision
+    front_stack* stack;  // [stack_count]
+    int stack_count, stack_capacity;
+    bool single; // L is stored in single precision
     bool planned, in_single, ready;
     int widest;             // rows of the largest front, in whole tiles
     double *load, *answer;  // [n] scaled, by unknown; by step
@@ -130,6 +119,8 @@ typedef struct ruga_ldl {
 ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start, const bool* last,
                             bool single, ruga_ldl** ldl);
 void ruga_ldl_destroy(ruga_ldl** ldl);
+// What stays of the stack that has the children of s when these are taken off.
+size_t ruga_ldl_below_children(const ruga_ldl* ldl, int s);
 // Room for `count` elements of `size` bytes; what grows, grows by 3 % at least.
 ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, size_t size);
 // `in_single`: the work is done in single precision, where L is stored so.

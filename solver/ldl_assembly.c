@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
 //
-// One front of the multifrontal factorisation (ldl.h), in either precision (ldl_front.h): assembled on the
-// stack from the matrix and the update matrices of its children, factored, and taken apart. Its columns of L
+// One front of the multifrontal factorisation (ldl.h), in either precision (ldl_front.h): its fully summed
+// columns are assembled on the stack from the matrix and the update matrices of its children, and factored;
+// its update matrix is made tile by tile, of what its pivots leave and of the children's. Its columns of L
 // are stored, in single precision where the factor is kept so; the update matrix and the columns without a
 // stable pivot stay on the stack.
 #include "solver/ldl_front.h"
@@ -18,46 +19,75 @@ typedef struct assembly {
     task_memory* memory;
     int s, own, late, below; // pivots of its own, delayed ones of children, rows that stay
     ruga_front front;
-    size_t base; // of the stack, under the children's updates
+    front_stack* stack;
     real* update;
 } assembly;
 
-static const real* delayed_of(const ruga_ldl* f, int c, const real** update, int* late, int* below) {
-    const front_record* r = &f->front[c];
-    *update = (const real*)f->memory[r->task].stack + r->update;
+static real* end_of_stack(const front_stack* stack) {
+    return (real*)stack->memory + stack->capacity / sizeof(real);
+}
+
+static const real* delayed_of(const assembly* a, int c, const real** update, int* late, int* below) {
+    const front_record* r = &a->ldl->front[c];
     *below = r->rows - r->full;
     *late = r->full - r->eliminated;
-    return *update + ruga_update_size(*below);
+    size_t size = ruga_update_size(*below), delayed = (size_t)*late * (size_t)(*late + *below + 1);
+    if (r->far && !r->upward) {
+        *update = end_of_stack(a->stack) - r->update - size;
+        return *update - delayed;
+    }
+    const void* memory = r->upward ? a->ldl->memory[r->task].upward : a->stack->memory;
+    *update = (const real*)memory + r->update;
+    return *update + size;
+}
+
+// Room for `count` reals; what the far stack has moves along with the end.
+static ruga_status reserve_stack(front_stack* stack, size_t far, size_t count) {
+    size_t before = stack->capacity / sizeof(real);
+    RUGA_TRY(ruga_ldl_make_room(&stack->memory, &stack->capacity, count * sizeof(real), 1));
+    if (stack->capacity / sizeof(real) > before) {
+        memmove(end_of_stack(stack) - far, (real*)stack->memory + before - far, far * sizeof(real));
+    }
+    return RUGA_OK;
+}
+
+static ruga_status reserve_upward(task_memory* m, size_t count) {
+    return ruga_ldl_make_room(&m->upward, &m->upward_capacity, (m->upward_used + count) * sizeof(real), 1);
 }
 
 static ruga_status reserve_front(assembly* a) {
     ruga_ldl* f = a->ldl;
     const ruga_ldl_symbolic* s = &f->symbolic;
     task_memory* m = a->memory;
-    a->base = m->stack_used;
     for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
         a->late += f->front[c].full - f->front[c].eliminated;
-        if (f->front[c].task == f->front[a->s].task && f->front[c].update < a->base) {
-            a->base = f->front[c].update;
-        }
     }
     a->own = s->pivot[a->s + 1] - s->pivot[a->s];
     a->below = (int)(s->row_start[a->s + 1] - s->row_start[a->s]);
-    size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below;
-    size_t update = ruga_update_size(a->below);
-    size_t used = m->stack_used + ruga_front_size(s->top[a->s], full, (size_t)a->below);
+    size_t full = (size_t)(a->own + a->late), rows = full + (size_t)a->below, *used = m->stack_used;
+    size_t update = ruga_update_size(a->below), size = ruga_front_size(s->top[a->s], full, (size_t)a->below);
+    bool far = f->front[a->s].far, upward = f->front[a->s].upward;
     RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used + rows, sizeof(int)));
-    RUGA_TRY(ruga_ldl_make_room(&m->stack, &m->stack_capacity, used * sizeof(real), 1));
-    a->update = (real*)m->stack + m->stack_used;
-    a->front = (ruga_front){.rows = (int)rows, .full = (int)full};
-    a->front.a = a->update + update;
+    RUGA_TRY(reserve_stack(a->stack, used[1], used[0] + used[1] + size - (upward ? update : 0)));
+    a->front = (ruga_front){.rows = (int)rows, .full = (int)full, .a = (real*)a->stack->memory + used[0]};
+    if (upward) {
+        RUGA_TRY(reserve_upward(m, update));
+        a->update = (real*)m->upward + m->upward_used;
+    } else if (far) {
+        a->update = end_of_stack(a->stack) - used[1] - update;
+    } else {
+        a->update = a->front.a;
+        a->front.a += update;
+    }
     a->front.index = m->index + m->index_used;
     a->front.pivot = a->front.a + full * rows;
     a->front.peak = a->front.pivot + 2 * full;
     a->front.work = a->front.peak + full;
     a->front.shared = s->top[a->s];
     a->front.must_finish = s->parent[a->s] < 0;
-    memset(a->update, 0, (update + full * rows) * sizeof(real));
+    for (size_t j = 0; j < full; j++) {
+        memset(a->front.a + j * rows + j, 0, (rows - j) * sizeof(real));
+    }
     memset(a->front.peak, 0, full * sizeof(real));
     return RUGA_OK;
 }
@@ -79,29 +109,56 @@ static void assemble_matrix(assembly* a) {
     }
 }
 
-// Adds child c's update matrix: rows and columns at place[], those from `own` on into our own update.
-static void add_update(assembly* a, const int* place, int below, const real* update) {
-    int split = 0;
-    while (split < below && place[split] < a->own) {
-        split++;
+// The first of the ascending places that is not below x.
+static int find_place(const int* place, int count, int x) {
+    int begin = 0;
+    while (begin < count) {
+        int middle = begin + (count - begin) / 2;
+        begin = place[middle] < x ? middle + 1 : begin;
+        count = place[middle] < x ? count : middle;
     }
-    for (int j = 0; j < below; j++) {
-        const real* from = update + ruga_update_column(below, j);
-        if (j < split) {
-            real* to = a->front.a + (size_t)place[j] * (size_t)a->front.rows;
-            a->front.peak[place[j]] += (real)fabs(from[j]);
-            for (int i = j; i < split; i++) {
-                to[place[i]] += from[i];
-            }
-            for (int i = split; i < below; i++) {
-                to[place[i] + a->late] += from[i];
-            }
-        } else {
-            real* to = a->update + ruga_update_column(a->below, place[j] - a->own);
-            for (int i = j; i < below; i++) {
-                to[place[i] - a->own] += from[i];
-            }
+    return begin;
+}
+
+// to[place[i]] += from[i], i in [begin, end): one run of consecutive places after another.
+RUGA_WIDE static void add_runs(const int* place, const int* run_end, int begin, int end,
+                               const real* restrict from, real* restrict to) {
+    for (int i = begin; i < end;) {
+        real* run = to + (place[i] - i);
+        for (int stop = run_end[i]; i < stop; i++) {
+            run[i] += from[i];
         }
+    }
+}
+
+// Adds the columns of child c's update matrix that are pivots of ours.
+static void add_pivot_columns(assembly* a, int c) {
+    const ruga_ldl_symbolic* s = &a->ldl->symbolic;
+    const int *place = s->place + s->row_start[c], *run_end = s->run_end + s->row_start[c];
+    const real* update;
+    int late, below;
+    (void)delayed_of(a, c, &update, &late, &below);
+    int split = find_place(place, below, a->own);
+    for (int j = 0; j < split; j++) {
+        const real* from = update + ruga_update_column(below, j);
+        real* to = a->front.a + (size_t)place[j] * (size_t)a->front.rows;
+        a->front.peak[place[j]] += (real)fabs(from[j]);
+        add_runs(place, run_end, j, split, from, to);
+        add_runs(place, run_end, split, below, from, to + a->late);
+    }
+}
+
+// Adds those that fall into the columns [begin, end) of our own update matrix.
+static void add_update_columns(const assembly* a, int c, int begin, int end) {
+    const ruga_ldl_symbolic* s = &a->ldl->symbolic;
+    const int *place = s->place + s->row_start[c], *run_end = s->run_end + s->row_start[c];
+    const real* update;
+    int late, below;
+    (void)delayed_of(a, c, &update, &late, &below);
+    int first = find_place(place, below, a->own + begin);
+    for (int j = first; j < below && place[j] < a->own + end; j++) {
+        real* to = a->update + ruga_update_column(a->below, place[j] - a->own) - a->own;
+        add_runs(place, run_end, j, below, update + ruga_update_column(below, j), to);
     }
 }
 
@@ -135,32 +192,34 @@ static void assemble_children(assembly* a) {
     for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
         const real* update;
         int late, below;
-        const real* delayed = delayed_of(f, c, &update, &late, &below);
+        const real* delayed = delayed_of(a, c, &update, &late, &below);
         const int* place = f->symbolic.place + f->symbolic.row_start[c];
-        add_update(a, place, below, update);
+        add_pivot_columns(a, c);
         add_delayed(a, c, column, place, late, below, delayed);
         column += late;
     }
 }
 
-typedef struct update_job {
-    const ruga_front* front;
-    real *work, *update; // work: a tile for each chunk
-} update_job;
-
-static void update_chunk(int begin, int end, int chunk, void* context) {
-    const update_job* job = context;
-    real* work = job->work + (size_t)chunk * RUGA_FRONT_TILE * (size_t)job->front->full;
-    ruga_front_update(job->front, begin, end, work, job->update);
+// Our update matrix by tiles: what our pivots leave, and the children's.
+static void update_tiles(int begin, int end, int chunk, void* context) {
+    const assembly* a = context;
+    const ruga_ldl* f = a->ldl;
+    real* work = a->front.work + (size_t)chunk * RUGA_FRONT_TILE * (size_t)a->front.full;
+    for (int t = begin; t < end; t += RUGA_FRONT_TILE) {
+        int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
+        ruga_front_update(&a->front, t, stop, work, a->update);
+        for (int c = f->child[a->s]; c >= 0; c = f->sibling[c]) {
+            add_update_columns(a, c, t, stop);
+        }
+    }
 }
 
 // The fronts at the top are few and large: their tiles are shared out. Below, tasks run side by side.
-static void update_below(assembly* a) {
+static void make_update(assembly* a) {
     if (a->ldl->symbolic.top[a->s]) {
-        update_job job = {&a->front, a->front.work, a->update};
-        ruga_parallel_for(a->below, RUGA_FRONT_TILE, update_chunk, &job);
+        ruga_parallel_for(a->below, RUGA_FRONT_TILE, update_tiles, a);
     } else {
-        ruga_front_update(&a->front, 0, a->below, a->front.work, a->update);
+        update_tiles(0, a->below, 0, a);
     }
 }
 
@@ -220,32 +279,52 @@ static ruga_status store_factor(assembly* a) {
     return RUGA_OK;
 }
 
-// Keeps L, and hands on the update matrix and the delayed columns, on the stack in the children's place.
+// The delayed columns and their peaks go beside the update matrix: down into the front that they stand in, or
+// up behind it, one by one.
+static ruga_status keep_delayed(assembly* a, const front_record* record) {
+    const ruga_front* f = &a->front;
+    size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, rows = (size_t)f->rows,
+           height = rows - done;
+    size_t update = ruga_update_size(a->below);
+    bool far = record->far && !record->upward;
+    if (record->upward) {
+        RUGA_TRY(reserve_upward(a->memory, update + late * (height + 1)));
+        a->update = (real*)a->memory->upward + a->memory->upward_used;
+    }
+    real* delayed = far ? a->update - late * (height + 1) : a->update + update;
+    real* peak = delayed + late * height;
+    if (far) {
+        memmove(peak, f->peak + done, late * sizeof(real));
+    }
+    for (size_t k = 0; k < late; k++) {
+        size_t q = far ? late - 1 - k : k;
+        memmove(delayed + q * height, f->a + (done + q) * rows + done, height * sizeof(real));
+    }
+    if (!far) {
+        memmove(peak, f->peak + done, late * sizeof(real));
+    }
+    return RUGA_OK;
+}
+
+// Keeps L, and hands on the update matrix and the delayed columns; the children's are gone.
 static ruga_status store_front(assembly* a) {
     ruga_ldl* ldl = a->ldl;
     task_memory* m = a->memory;
     const ruga_front* f = &a->front;
-    size_t update = ruga_update_size(a->below), rows = (size_t)f->rows;
-    size_t done = (size_t)f->eliminated, late = (size_t)f->full - done, height = rows - done;
-    size_t begin = m->factor_used;
+    size_t rows = (size_t)f->rows, late = (size_t)(f->full - f->eliminated), begin = m->factor_used;
     RUGA_TRY(store_factor(a));
-    real* base = (real*)m->stack + a->base;
-    memmove(base, a->update, update * sizeof(real));
-    real* delayed = base + update; // below the front, whose columns move down one by one
-    for (size_t q = 0; q < late; q++) {
-        memmove(delayed + q * height, f->a + (done + q) * rows + done, height * sizeof(real));
-    }
-    memmove(delayed + late * height, f->peak + done, late * sizeof(real));
     front_record* record = &ldl->front[a->s];
-    *record = (front_record){.factor = begin,
-                             .index = m->index_used,
-                             .update = a->base,
-                             .task = record->task,
-                             .rows = f->rows,
-                             .full = f->full,
-                             .eliminated = f->eliminated};
+    RUGA_TRY(keep_delayed(a, record));
+    size_t* handed = ruga_ldl_used(m, record);
+    m->stack_used[!record->far] = ruga_ldl_below_children(ldl, a->s);
+    record->factor = begin;
+    record->index = m->index_used;
+    record->update = *handed;
+    record->rows = f->rows;
+    record->full = f->full;
+    record->eliminated = f->eliminated;
     m->index_used += rows;
-    m->stack_used = a->base + update + late * (height + 1);
+    *handed += ruga_update_size(a->below) + late * (late + (size_t)a->below + 1);
     return RUGA_OK;
 }
 
@@ -265,16 +344,14 @@ static void invert_pivots(ruga_front* f) {
     }
 }
 
-ruga_status ruga_ldl_factor_front(ruga_ldl* f, int s) {
-    assembly a = {.ldl = f, .memory = &f->memory[f->front[s].task], .s = s};
+ruga_status ruga_ldl_factor_front(ruga_ldl* f, int s, front_stack* stack) {
+    assembly a = {.ldl = f, .memory = &f->memory[f->front[s].task], .s = s, .stack = stack};
     task_memory* m = a.memory;
     RUGA_TRY(reserve_front(&a));
     assemble_matrix(&a);
     assemble_children(&a);
     ruga_front_factor(&a.front);
-    if (a.below > 0 && a.front.eliminated > 0) {
-        update_below(&a);
-    }
+    make_update(&a);
     double w = a.front.eliminated, r = a.front.rows - w;
     m->entries += w * (w + 1) / 2 + w * r;
     m->flops += w * r * r + w * w * r + w * w * w / 3;

@@ -14,11 +14,13 @@
 #include "solver/ldl_front.h"
 
 #include "core/parallel.h"
+#include "core/wide.h"
 
 #include <cblas.h>
 #include <math.h>
+#include <string.h>
 
-enum { INNER = 8, OUTER = RUGA_FRONT_BLOCK };
+enum { INNER = 8, STRIP = 32, OUTER = RUGA_FRONT_BLOCK };
 
 static const double threshold = 0.01;
 // A pivot below this share of the largest value that its diagonal ever had is what cancellation left.
@@ -49,31 +51,40 @@ static void exchange(ruga_front* f, int p, int q) {
     f->index[q] = index;
 }
 
+// max |x_i| over [0, count). Sizes are in the order of their bits, as integers: of these the compiler makes
+// vectors.
+RUGA_WIDE static real largest_size(int count, const real* x) {
+    bits largest = 0;
+    for (int i = 0; i < count; i++) {
+        real size = (real)fabs(x[i]);
+        bits b;
+        memcpy(&b, &size, sizeof b);
+        largest = b > largest ? b : largest;
+    }
+    real size;
+    memcpy(&size, &largest, sizeof size);
+    return size;
+}
+
 // The largest |a_ij|, i != j and i != skip, over rows [begin, rows), where columns [begin, j] are up to date.
-// *where: its row, the last of equals.
-static double largest_off_diagonal(const ruga_front* f, int begin, int j, int skip, int* where) {
-    double largest = -1;
+static double largest_off_diagonal(const ruga_front* f, int begin, int j, int skip) {
+    double largest = 0;
     for (int i = begin; i < j; i++) {
-        double size = fabs(*at(f, j, i));
-        if (i != skip && size >= largest) {
-            largest = size;
-            *where = i;
+        largest = i == skip ? largest : fmax(largest, fabs(*at(f, j, i)));
+    }
+    int cut = skip > j ? skip : j;
+    largest = fmax(largest, largest_size(cut - j - 1, at(f, j + 1, j)));
+    return fmax(largest, largest_size(f->rows - cut - 1, at(f, cut + 1, j)));
+}
+
+// The first row i >= begin, i != j, with this |a_ij|.
+static int find_size(const ruga_front* f, int begin, int j, double size) {
+    for (int i = begin; i < f->rows; i++) {
+        if (i != j && fabs(i < j ? *at(f, j, i) : *at(f, i, j)) == size) {
+            return i;
         }
     }
-    int cut = skip > j ? skip : f->rows;
-    const int range[2][2] = {{j + 1, cut}, {cut + 1, f->rows}};
-    for (int k = 0; k < 2; k++) {
-        int count = range[k][1] - range[k][0];
-        if (count <= 0) {
-            continue;
-        }
-        int i = range[k][0] + (int)RUGA_BLAS_IAMAX(count, at(f, range[k][0], j), 1);
-        if (fabs(*at(f, i, j)) > largest) {
-            largest = fabs(*at(f, i, j));
-            *where = i;
-        }
-    }
-    return largest < 0 ? 0 : largest;
+    return f->rows;
 }
 
 static bool pair_is_stable(const ruga_front* f, int begin, int j, int r) {
@@ -83,24 +94,21 @@ static bool pair_is_stable(const ruga_front* f, int begin, int j, int r) {
         fabs(determinant) < 0.5 * fmax(fabs(a * c), b * b) || determinant == 0) {
         return false;
     }
-    int unused;
-    double gj = largest_off_diagonal(f, begin, j, r, &unused);
-    double gr = largest_off_diagonal(f, begin, r, j, &unused);
+    double gj = largest_off_diagonal(f, begin, j, r), gr = largest_off_diagonal(f, begin, r, j);
     double limit = fabs(determinant) / threshold;
     return fabs(c) * gj + fabs(b) * gr <= limit && fabs(b) * gj + fabs(a) * gr <= limit;
 }
 
 // Size of a stable pivot on column j among the columns [begin, end), all up to date: 0 where there is none.
 static int find_pivot(const ruga_front* f, int begin, int end, int j, int* partner) {
-    double d = fabs(*at(f, j, j));
-    int r = -1;
-    double largest = largest_off_diagonal(f, begin, j, -1, &r);
+    double d = fabs(*at(f, j, j)), largest = largest_off_diagonal(f, begin, j, -1);
     if (d > round_off * f->peak[j] && d >= threshold * largest) {
         return 1;
     }
     if (largest == 0) { // nothing but round-off: a zero pivot, wherever it stands
         return 1;
     }
+    int r = find_size(f, begin, j, largest);
     if (r < end && pair_is_stable(f, begin, j, r)) {
         *partner = r;
         return 2;
@@ -112,6 +120,17 @@ static void note_peaks(ruga_front* f, int begin, int end) {
     for (int j = begin; j < end; j++) {
         real size = (real)fabs(*at(f, j, j));
         f->peak[j] = size > f->peak[j] ? size : f->peak[j];
+    }
+}
+
+// a -= l w^T, a [rows][columns].
+RUGA_WIDE static void subtract_outer(int rows, int columns, const real* restrict l, const real* w, real* a,
+                                     size_t stride) {
+    for (int j = 0; j < columns; j++) {
+        real* restrict column = a + (size_t)j * stride;
+        for (int i = j; i < rows; i++) {
+            column[i] -= l[i] * w[j];
+        }
     }
 }
 
@@ -130,7 +149,7 @@ static void eliminate_one(ruga_front* f, int end) {
     }
     RUGA_BLAS(scal)(below, 1 / d, l, 1);
     if (columns > 0) {
-        RUGA_BLAS(ger)(CblasColMajor, below, columns, -1, l, 1, f->work, 1, at(f, k + 1, k + 1), f->rows);
+        subtract_outer(below, columns, l, f->work, at(f, k + 1, k + 1), (size_t)f->rows);
     }
     note_peaks(f, k + 1, end);
 }
@@ -197,7 +216,8 @@ static void eliminate_columns(ruga_front* f, int end) {
 }
 
 // w = (L D)^T of rows [begin, end) and pivots [first, last): column p of w is w[p * (end - begin)].
-static void multiply_pivots(const ruga_front* f, int begin, int end, int first, int last, real* w) {
+RUGA_WIDE static void multiply_pivots(const ruga_front* f, int begin, int end, int first, int last,
+                                      real* restrict w) {
     int count = end - begin;
     for (int p = first; p < last; p++) {
         real d = f->pivot[2 * p], e = f->pivot[2 * p + 1];
@@ -220,6 +240,23 @@ static void multiply_pivots(const ruga_front* f, int begin, int end, int first, 
     }
 }
 
+// c -= l w^T, or c = -l w^T, on and below the diagonal of c [rows][columns]: there in strips, so that little
+// is computed above it. w [pivots][columns].
+static void subtract_product(int rows, int columns, int pivots, const real* l, int stride, const real* w,
+                             real keep, real* c, int c_stride) {
+    for (int j = 0; j < columns; j += STRIP) {
+        int width = columns - j < STRIP ? columns - j : STRIP;
+        RUGA_BLAS(gemm)
+        (CblasColMajor, CblasNoTrans, CblasTrans, columns - j, width, pivots, -1, l + j, stride, w + j,
+         columns, keep, c + (ptrdiff_t)j * c_stride + j, c_stride);
+    }
+    if (rows > columns) {
+        RUGA_BLAS(gemm)
+        (CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, pivots, -1, l + columns, stride, w,
+         columns, keep, c + columns, c_stride);
+    }
+}
+
 // Pivots [first, eliminated) for the columns [begin, begin + count) by tiles.
 typedef struct columns_job {
     ruga_front* front;
@@ -233,9 +270,8 @@ static void update_tile(int tile, int stop, int chunk, void* context) {
     int t = job->begin + tile, end = job->begin + stop, pivots = f->eliminated - job->first;
     real* work = f->work + (job->shared ? (size_t)chunk * RUGA_FRONT_TILE * OUTER : 0);
     multiply_pivots(f, t, end, job->first, f->eliminated, work);
-    RUGA_BLAS(gemm)
-    (CblasColMajor, CblasNoTrans, CblasTrans, f->rows - t, end - t, pivots, -1, at(f, t, job->first), f->rows,
-     work, end - t, 1, at(f, t, t), f->rows);
+    subtract_product(f->rows - t, end - t, pivots, at(f, t, job->first), f->rows, work, 1, at(f, t, t),
+                     f->rows);
     note_peaks(f, t, end);
 }
 
@@ -290,13 +326,13 @@ void ruga_front_factor(ruga_front* f) {
 }
 
 void ruga_front_update(const ruga_front* f, int begin, int end, real* work, real* update) {
-    int rows = f->rows - f->full;
-    for (int t = begin; t < end; t += RUGA_FRONT_TILE) {
-        int stop = end - t < RUGA_FRONT_TILE ? end : t + RUGA_FRONT_TILE;
-        multiply_pivots(f, f->full + t, f->full + stop, 0, f->eliminated, work);
-        RUGA_BLAS(gemm)
-        (CblasColMajor, CblasNoTrans, CblasTrans, rows - t, stop - t, f->eliminated, -1,
-         at(f, f->full + t, 0), f->rows, work, stop - t, 1, update + ruga_update_column(rows, t) + t,
-         rows - t);
+    int rows = f->rows - f->full, stride = rows - begin;
+    real* tile = update + ruga_update_column(rows, begin) + begin;
+    if (f->eliminated == 0) {
+        memset(tile, 0, (size_t)(end - begin) * (size_t)stride * sizeof *tile);
+        return;
     }
+    multiply_pivots(f, f->full + begin, f->full + end, 0, f->eliminated, work);
+    subtract_product(stride, end - begin, f->eliminated, at(f, f->full + begin, 0), f->rows, work, 0, tile,
+                     stride);
 }

@@ -8,17 +8,19 @@
 
 #include "solver/ldl.h"
 
+#include <stdint.h>
+
 #ifdef RUGA_LDL_SINGLE
 typedef float real;
+typedef int32_t bits;
 #define RUGA_BLAS(name)       cblas_s##name
-#define RUGA_BLAS_IAMAX       cblas_isamax
 #define ruga_front_factor     ruga_front_factor_single
 #define ruga_front_update     ruga_front_update_single
 #define ruga_ldl_factor_front ruga_ldl_factor_front_single
 #else
 typedef double real;
+typedef int64_t bits;
 #define RUGA_BLAS(name) cblas_d##name
-#define RUGA_BLAS_IAMAX cblas_idamax
 #endif
 
 // Columns [0, full) are fully summed, of which the first `eliminated` become pivots.
@@ -37,13 +39,13 @@ typedef struct ruga_front {
 // Eliminates as many of the fully summed columns as stable pivots are found for.
 void ruga_front_factor(ruga_front* front);
 
-// update -= L2 D L2^T, columns [begin, end), with `work` as in the front; begin is the first of a tile.
+// update = -L2 D L2^T on the tile of columns [begin, end), with `work` as in the front.
 void ruga_front_update(const ruga_front* front, int begin, int end, real* work, real* update);
 
 // Assembles supernode s, eliminates, hands on what is left and stores L.
-ruga_status ruga_ldl_factor_front(ruga_ldl* ldl, int s);
+ruga_status ruga_ldl_factor_front(ruga_ldl* ldl, int s, front_stack* stack);
 #ifndef RUGA_LDL_SINGLE
-ruga_status ruga_ldl_factor_front_single(ruga_ldl* ldl, int s);
+ruga_status ruga_ldl_factor_front_single(ruga_ldl* ldl, int s, front_stack* stack);
 #endif
 
 #endif

@@ -3,7 +3,7 @@
 //
 // Analysis for the multifrontal factorisation (Duff, Reid 1983; Liu 1992): elimination tree, supernodes,
 // amalgamation of small supernodes with their parents, rows of each front, and where everything goes.
-#include "solver/ldl.h"
+#include "solver/ldl_symbolic.h"
 
 #include "core/memory.h"
 #include "solver/ordering.h"
@@ -18,6 +18,7 @@ void ruga_ldl_symbolic_clear(ruga_ldl_symbolic* symbolic) {
     ruga_release(symbolic->row_start);
     ruga_release(symbolic->row);
     ruga_release(symbolic->place);
+    ruga_release(symbolic->run_end);
     ruga_release(symbolic->entry_start);
     ruga_release(symbolic->entry);
     ruga_release(symbolic->entry_row);
@@ -31,7 +32,7 @@ size_t ruga_ldl_symbolic_bytes(const ruga_ldl_symbolic* symbolic) {
     size_t count = (size_t)symbolic->count;
     size_t entries = symbolic->entry_start ? (size_t)symbolic->entry_start[count] : 0;
     size_t rows = symbolic->row_start ? symbolic->row_start[count] : 0;
-    return ((size_t)symbolic->n + 3 * count + 3 * entries + 2 * rows) * sizeof(int) +
+    return ((size_t)symbolic->n + 3 * count + 3 * entries + 3 * rows) * sizeof(int) +
            count * (sizeof(size_t) + sizeof(bool));
 }
 
@@ -286,6 +287,7 @@ static ruga_status find_rows(const builder* b, ruga_ldl_symbolic* symbolic) {
     }
     RUGA_TRY_DONE(RUGA_NEW(symbolic->row, symbolic->row_start[b->count]));
     RUGA_TRY_DONE(RUGA_NEW(symbolic->place, symbolic->row_start[b->count]));
+    RUGA_TRY_DONE(RUGA_NEW(symbolic->run_end, symbolic->row_start[b->count]));
     for (int i = 0; i < symbolic->n; i++) {
         step[symbolic->order[i]] = i;
         mark[i] = -1;
@@ -330,6 +332,19 @@ static void find_places(ruga_ldl_symbolic* symbolic) {
                 q++;
             }
             symbolic->place[r] = own + (int)(q - symbolic->row_start[p]);
+        }
+    }
+}
+
+// Runs end at the last of the parent's pivots, too: delayed ones may come between them and the rows below.
+static void find_runs(ruga_ldl_symbolic* symbolic) {
+    for (int s = 0; s < symbolic->count; s++) {
+        size_t begin = symbolic->row_start[s], end = symbolic->row_start[s + 1];
+        const int *place = symbolic->place, p = symbolic->parent[s];
+        int own = p < 0 ? 0 : symbolic->pivot[p + 1] - symbolic->pivot[p];
+        for (size_t r = end; r-- > begin;) {
+            bool goes_on = r + 1 < end && place[r + 1] == place[r] + 1 && place[r + 1] != own;
+            symbolic->run_end[r] = goes_on ? symbolic->run_end[r + 1] : (int)(r + 1 - begin);
         }
     }
 }
@@ -461,6 +476,7 @@ ruga_status ruga_ldl_analyse(const ruga_sparse* lower, int node_count, const int
     set_order(&b, symbolic);
     RUGA_TRY_DONE(find_rows(&b, symbolic));
     find_places(symbolic);
+    find_runs(symbolic);
     RUGA_TRY_DONE(place_entries(lower, symbolic));
     RUGA_TRY_DONE(share_out(symbolic));
 done:

@@ -38,8 +38,7 @@ void ruga_factor_destroy(ruga_factor** factor);
 
 // Numeric factorisation of the matrix with `values` in the analysed pattern. A matrix that is not positive
 // definite is not an error: see info. Values that are not finite are. Nothing is allocated from the second
-// call on, unless more pivots must be delayed to parent fronts than ever before, or it is the first one in double.
-// Uses ruga_threads() threads.
+// call on, unless more pivots must be delayed to parent fronts than ever before. Uses ruga_threads() threads.
 ruga_status ruga_factor_numeric(ruga_factor* factor, const double* values, ruga_factor_info* info);
 
 // LDL_SINGLE only: made in single precision throughout, in half of the time. The inertia is that of a matrix

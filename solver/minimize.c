@@ -66,7 +66,7 @@ ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, boo
     case RUGA_METHOD_NEWTON:
         RUGA_TRY(ruga_skin_restore(skin, x));
         ruga_skin_follow(skin, x);
-        RUGA_TRY(ruga_newton_minimize(skin, x, tolerance, certify, result));
+        RUGA_TRY(ruga_newton_minimize(skin, x, tolerance, certify, false, result));
         break;
     case RUGA_METHOD_DEFAULT:
     case RUGA_METHOD_QUASI_NEWTON:

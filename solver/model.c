@@ -10,6 +10,7 @@
 #include "mesh/doctor.h"
 #include "shell/shell.h"
 #include "solver/anchor.h"
+#include "solver/stages.h"
 #include "solver/start.h"
 
 #include <math.h>
@@ -36,11 +37,6 @@ static ruga_status check_motion(const ruga_model_def* def) {
                              "start.fold: needs interior: none; a skin starts on its interior");
         }
         bool started = start->cone != 0 || ruga_norm(start->velocity) > 0 || ruga_norm(start->spin) > 0;
-        for (int i = 0; i < def->crease_count; i++) {
-            if (def->creases[i].start > 0) {
-                return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.motion: dynamic", i);
-            }
-        }
         if (s->creases != RUGA_CREASE_ANGLE) {
             return ruga_fail(RUGA_BAD_INPUT, "skin.creases: springs in place of angles need motion: dynamic");
         }
@@ -62,11 +58,6 @@ static ruga_status check_motion(const ruga_model_def* def) {
     }
     if (trouble) {
         return ruga_fail(RUGA_BAD_INPUT, "skin.motion: dynamic %s", trouble);
-    }
-    for (int i = 0; i < def->crease_count && s->creases != RUGA_CREASE_ANGLE; i++) {
-        if (def->creases[i].start > 0) {
-            return ruga_fail(RUGA_BAD_INPUT, "creases.%d.start: needs skin.creases: angle", i);
-        }
     }
     RUGA_TRY(require(positive(s->density), "skin.density", s->density, "above 0 where the skin moves"));
     RUGA_TRY(require(s->damping >= 0 && isfinite(s->damping), "skin.damping", s->damping, "0 or above"));
@@ -227,12 +218,12 @@ static ruga_status copy_def(const ruga_model_def* def, ruga_model* model) {
 // ---- building ------------------------------------------------------------------------------------------
 
 // Cuts the mesh: the sheet is the creases' own from now on, and the mesh that of nodes and pieces.
-static ruga_status build_creases(const ruga_model_def* def, ruga_model* model) {
+static ruga_status build_creases(const ruga_model_def* def, const int* stage, int now, ruga_model* model) {
     ruga_mesh nodes = {0};
     RUGA_TRY(ruga_progress("cutting along creases", 0));
     RUGA_TRY(ruga_variation_carry(&def->skin, &model->mesh));
-    RUGA_TRY(ruga_creases_create(def->crease_count, def->creases, &model->mesh, &model->connectivity,
-                                 &model->creases));
+    RUGA_TRY(ruga_creases_create(def->crease_count, def->creases, stage, now, &model->mesh,
+                                 &model->connectivity, &model->creases));
     RUGA_TRY(ruga_creases_nodes(model->creases, &nodes));
     ruga_mesh_clear(&model->mesh);
     ruga_connectivity_clear(&model->connectivity);
@@ -528,35 +519,37 @@ static ruga_status build_dense(ruga_model* model, double depth) {
 
 double ruga_model_force_floor(const ruga_model* model) {
     // A strain's round-off is that of positions over edges, so a nodal force has that of E h times the
-    // extent.
+    // extent; a stiff hinge's angle has that of positions over the distance to the crease.
     double stiffness = model->skin.young * model->skin.thickness;
-    double round_off = 0.25 * 0x1p-52 * model->extent * sqrt(3.0 * model->mesh.vertex_count);
-    return stiffness * fmax(1e-8 * model->mean_edge, round_off / model->solver.tolerance);
+    double answer = stiffness * sqrt(3.0 * model->mesh.vertex_count) + (model->creases ? model->creases->answer : 0);
+    double round_off = 0.25 * 0x1p-52 * model->extent * answer;
+    return fmax(1e-8 * model->mean_edge * stiffness, round_off / model->solver.tolerance);
 }
 
 bool ruga_model_is_prescribed(const ruga_model* model) {
     return model->has_interior && model->interior.motion == RUGA_INTERIOR_PRESCRIBED;
 }
 
-ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
-    RUGA_ASSERT(def->cookie == RUGA_MODEL_COOKIE);
+// With the creases that have come at stage `now`, of [creases]; `before` is the model of the stage before, or
+// NULL.
+static ruga_status create_stage(const ruga_model_def* def, const int* stage, int now,
+                                const ruga_model* before, ruga_model** out) {
     ruga_status status = RUGA_OK;
     ruga_model* model = NULL;
     *out = NULL;
-    RUGA_TRY(check_material(def));
-    RUGA_TRY(check_numbers(def));
-    RUGA_TRY(ruga_dense_check(def));
-    RUGA_TRY(check_creases(def));
     RUGA_TRY(RUGA_NEW_ZERO(model, 1));
     RUGA_TRY_DONE(copy_def(def, model));
     if (model->skin.model == RUGA_SKIN_VOLUME) {
         model->lattice_def.depth = 0; // the lattice only carries the surface along: one layer will do
     }
     RUGA_TRY_DONE(build_mesh(model));
-    RUGA_TRY_DONE(def->crease_count > 0 ? build_creases(def, model)
+    RUGA_TRY_DONE(def->crease_count > 0 ? build_creases(def, stage, now, model)
                                         : ruga_variation_create(&def->skin, model));
-    RUGA_TRY_DONE(ruga_start_create(model));
+    RUGA_TRY_DONE(before ? ruga_stage_follow(model, before) : ruga_start_create(model));
     RUGA_TRY_DONE(build_skin_holds(model));
+    if (before) {
+        ruga_stage_release_holds(model, before);
+    }
     RUGA_TRY_DONE(build_loads(model));
     if (model->has_interior) {
         RUGA_TRY_DONE(build_interior(def, model));
@@ -578,6 +571,43 @@ done:
         ruga_model_destroy(&model);
     }
     *out = model;
+    return status;
+}
+
+ruga_status ruga_model_create(const ruga_model_def* def, ruga_model** out) {
+    RUGA_ASSERT(def->cookie == RUGA_MODEL_COOKIE);
+    ruga_status status = RUGA_OK;
+    ruga_stage* stages = NULL;
+    int *stage = NULL, count = 0;
+    double* end = NULL;
+    *out = NULL;
+    RUGA_TRY(check_material(def));
+    RUGA_TRY(check_numbers(def));
+    RUGA_TRY(ruga_dense_check(def));
+    RUGA_TRY(check_creases(def));
+    RUGA_TRY_DONE(RUGA_NEW(stage, def->crease_count));
+    RUGA_TRY_DONE(RUGA_NEW(end, def->crease_count));
+    count = ruga_creases_stages(def->crease_count, def->creases, def->step, stage, end);
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(stages, count));
+    for (int k = 0; k < count; k++) {
+        stages[k].end = end[k];
+        RUGA_TRY_DONE(create_stage(def, stage, k, k > 0 ? stages[k - 1].model : NULL, &stages[k].model));
+    }
+    RUGA_TRY_DONE(create_stage(def, stage, count, count > 0 ? stages[count - 1].model : NULL, out));
+    (*out)->stage = stages;
+    (*out)->stage_count = count;
+    stages = NULL;
+    status = ruga_stages_join(*out);
+done:
+    for (int k = 0; k < count && stages; k++) {
+        ruga_model_destroy(&stages[k].model);
+    }
+    ruga_release(stages);
+    ruga_release(stage);
+    ruga_release(end);
+    if (status != RUGA_OK) {
+        ruga_model_destroy(out);
+    }
     return status;
 }
 
@@ -606,6 +636,14 @@ void ruga_model_destroy(ruga_model** model_pointer) {
     ruga_connectivity_clear(&model->connectivity);
     ruga_mesh_clear(&model->mesh);
     ruga_creases_destroy(&model->creases);
+    for (int k = 0; k < model->stage_count; k++) {
+        ruga_release(model->stage[k].node);
+        ruga_release(model->stage[k].hinge);
+        ruga_model_destroy(&model->stage[k].model);
+    }
+    ruga_release(model->stage);
+    ruga_release(model->parent_node);
+    ruga_release(model->parent_hinge);
     ruga_release(model);
     *model_pointer = NULL;
 }

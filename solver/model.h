@@ -27,7 +27,18 @@ typedef struct ruga_variation {
     double* triangle_critical; // [F] local critical strain; NULL without an interior
 } ruga_variation;
 
+// What a model is until some of its creases come (stages.h).
+typedef struct ruga_stage {
+    ruga_model* model;  // the same sheet without them
+    double end;         // frames
+    int *node, *hinge;  // [nodes and hinges of the whole] in this one; a hinge that is not there is -1
+} ruga_stage;
+
 struct ruga_model {
+    int stage_count; // before all creases are there
+    ruga_stage* stage;
+    int *parent_node, *parent_hinge; // of one that follows another: likewise, in that one
+
     ruga_mesh mesh;         // what moves: with creases the nodes, and a triangle for each piece
     ruga_creases* creases;  // NULL = none
     const ruga_mesh* sheet; // what regions, lattice and clusters see: the mesh, before it was cut

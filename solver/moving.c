@@ -3,9 +3,6 @@
 //
 // Rest angles move linearly within a frame, from what they are to what keyframes and plastic flow make of
 // them at its end (hinges.h). Handles hold nodes where they are at the start, and move them from there.
-//
-// A crease that comes later has until then the stiffness and the angle of the material: the sheet is cut from
-// the beginning, and when it becomes a crease nothing jumps but the moment at it.
 #include "solver/moving.h"
 
 #include "core/memory.h"
@@ -22,10 +19,8 @@ struct ruga_moving {
     ruga_cut cut;
     ruga_dynamic* dynamic;
     int nodes;
-    double begin;                     // s, of the frame
+    double begin, duration;           // s, of the frame, or of a part of it
     double *velocity, *start, *slope; // [nodes][3]
-    bool later;                       // some creases come later
-    double* stiffness;                // [segments] N, of now
 };
 
 void ruga_moving_destroy(ruga_moving** moving) {
@@ -39,7 +34,6 @@ void ruga_moving_destroy(ruga_moving** moving) {
     ruga_release(m->velocity);
     ruga_release(m->start);
     ruga_release(m->slope);
-    ruga_release(m->stiffness);
     ruga_release(m);
     *moving = NULL;
 }
@@ -51,6 +45,7 @@ static ruga_status create_dynamic(ruga_moving* m) {
     const ruga_model* model = m->model;
     const ruga_creases* creases = model->creases;
     ruga_dynamic_def def = ruga_default_dynamic_def();
+    double* stiffness = NULL;
     bool* held = NULL;
     def.elastic.raster = creases ? &creases->raster : &m->raster;
     def.elastic.cut = creases ? &creases->cut : &m->cut;
@@ -59,21 +54,19 @@ static ruga_status create_dynamic(ruga_moving* m) {
     def.damping = model->skin.damping;
     def.drag = model->skin.drag;
     memcpy(def.gravity, model->gravity, sizeof def.gravity);
-    RUGA_TRY_DONE(RUGA_NEW_ZERO(m->stiffness, def.elastic.cut->segment_count));
-    for (int h = 0; creases && h < creases->segment_count;
-         h++) { // of those that come later there is always some
-        bool there = ruga_crease_is_there(creases, h, 0);
-        m->stiffness[creases->segment[h]] = there ? creases->stiffness[h] : creases->whole[h];
-        m->later = m->later || !there;
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(stiffness, def.elastic.cut->segment_count));
+    for (int h = 0; creases && h < creases->segment_count; h++) {
+        stiffness[creases->segment[h]] = creases->stiffness[h];
     }
     RUGA_TRY_DONE(RUGA_NEW(held, 3 * (size_t)m->nodes));
     for (int i = 0; i < 3 * m->nodes; i++) {
         held[i] = model->skin_handle[i] >= 0;
     }
-    def.elastic.stiffness = m->stiffness;
+    def.elastic.stiffness = stiffness;
     def.held = held;
     RUGA_TRY_DONE(ruga_dynamic_create(&def, &m->dynamic));
 done:
+    ruga_release(stiffness);
     ruga_release(held);
     return status;
 }
@@ -125,15 +118,12 @@ done:
     return status;
 }
 
-// Angles near those that were folded: half a turn has two signs.
+// Angles near those that are followed: half a turn has two signs.
 static void take_angles(ruga_moving* m) {
     const ruga_creases* creases = m->model->creases;
     double* angle = ruga_dynamic_elastic(m->dynamic)->angle;
     for (int h = 0; creases && h < creases->hinge_count; h++) {
-        angle[creases->segment[h]] = ruga_start_angle(m->model, h);
-    }
-    if (creases) {
-        ruga_start_hinges(m->model, m->skin->hinges);
+        angle[creases->segment[h]] = m->skin->hinges->near[h];
     }
 }
 
@@ -149,8 +139,21 @@ ruga_status ruga_moving_start(ruga_moving* m, double* x) {
         m->velocity[i] = m->model->skin_handle[i] >= 0 ? 0 : start->velocity[i % 3] + turn[i % 3];
     }
     ruga_dynamic_start(m->dynamic, x, m->velocity);
+    if (m->model->creases) {
+        ruga_start_hinges(m->model, m->skin->hinges);
+    }
     take_angles(m);
     return RUGA_OK;
+}
+
+void ruga_moving_carry(const ruga_moving* from, ruga_moving* m, double* x) {
+    for (int n = 0; n < m->nodes; n++) {
+        size_t at = 3 * (size_t)n, was = 3 * (size_t)m->model->parent_node[n];
+        memcpy(m->velocity + at, from->velocity + was, 3 * sizeof *m->velocity);
+        memcpy(m->start + at, from->start + was, 3 * sizeof *m->start);
+    }
+    ruga_dynamic_start(m->dynamic, x, m->velocity);
+    take_angles(m);
 }
 
 // ---- what drives it ------------------------------------------------------------------------------------
@@ -182,14 +185,9 @@ static void load(void* context, double time, const double* x, double* force, dou
         force[i] -= m->slope[i];
     }
     if (creases) {
-        ruga_hinges_advance(m->skin->hinges, fmin((time - m->begin) / m->model->step, 1));
+        ruga_hinges_advance(m->skin->hinges, fmin((time - m->begin) / m->duration, 1));
         for (int h = 0; h < creases->segment_count; h++) {
-            bool there = ruga_crease_is_there(creases, h, time);
-            rest[creases->segment[h]] = there ? m->skin->hinges->rest[h] : creases->drawn[h];
-            m->stiffness[creases->segment[h]] = there ? creases->stiffness[h] : creases->whole[h];
-        }
-        if (m->later) {
-            ruga_elastic_set_stiffness(ruga_dynamic_elastic(m->dynamic), m->stiffness);
+            rest[creases->segment[h]] = m->skin->hinges->rest[h];
         }
     }
 }
@@ -220,23 +218,23 @@ void ruga_moving_measure(ruga_moving* m, double time, const double* x, ruga_repo
     const ruga_creases* creases = m->model->creases;
     ruga_elastic* elastic = ruga_dynamic_elastic(m->dynamic);
     for (int h = 0; creases && h < creases->segment_count; h++) {
-        bool there = ruga_crease_is_there(creases, h, time);
-        elastic->rest[creases->segment[h]] = there ? m->skin->hinges->rest[h] : creases->drawn[h];
+        elastic->rest[creases->segment[h]] = m->skin->hinges->rest[h];
     }
     ruga_elastic_set_rest(elastic, elastic->rest); // and with it the lengths of springs
     ruga_elastic_force(elastic, x, m->slope, &e);
     put_energies(m, time, x, &e, report);
 }
 
-ruga_status ruga_moving_step(ruga_moving* m, double time, double* x, ruga_report* report) {
+ruga_status ruga_moving_step(ruga_moving* m, double time, double duration, double* x, ruga_report* report) {
     const ruga_creases* creases = m->model->creases;
     const ruga_dynamic_drive drive = {.move = move, .load = load, .context = m};
     ruga_dynamic_report done;
     m->begin = time;
+    m->duration = duration;
     if (creases) {
-        (void)ruga_hinges_begin(m->skin->hinges, time + m->model->step, m->model->step);
+        (void)ruga_hinges_begin(m->skin->hinges, time + duration, duration);
     }
-    RUGA_TRY(ruga_dynamic_advance(m->dynamic, &drive, time, m->model->step, x, m->velocity, &done));
+    RUGA_TRY(ruga_dynamic_advance(m->dynamic, &drive, time, duration, x, m->velocity, &done));
     const double* angle = ruga_dynamic_elastic(m->dynamic)->angle;
     for (int h = 0; creases && h < creases->hinge_count; h++) {
         double* near = &m->skin->hinges->near[h];
@@ -245,7 +243,7 @@ ruga_status ruga_moving_step(ruga_moving* m, double time, double* x, ruga_report
     }
     report->substeps = done.substeps;
     report->linear_iterations = done.damping_products;
-    put_energies(m, time + m->model->step, x, &done.elastic, report);
+    put_energies(m, time + duration, x, &done.elastic, report);
     return RUGA_OK;
 }
 

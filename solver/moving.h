@@ -16,8 +16,11 @@ ruga_status ruga_moving_create(const ruga_model* model, ruga_skin* skin, ruga_mo
 void ruga_moving_destroy(ruga_moving** moving);
 // The shape and, with its velocity, the motion that the model starts with; x [nodes][3] is SET.
 ruga_status ruga_moving_start(ruga_moving* moving, double* x);
-// A frame from `time` on.
-ruga_status ruga_moving_step(ruga_moving* moving, double time, double* x, ruga_report* report);
+// x and the motion of one of the stage before, cut (stages.h); x and the skin's hinges hold what they are then.
+void ruga_moving_carry(const ruga_moving* from, ruga_moving* moving, double* x);
+// A frame, or a part of one, from `time` on.
+ruga_status ruga_moving_step(ruga_moving* moving, double time, double duration, double* x,
+                             ruga_report* report);
 // Energies as they stand at x and `time`.
 void ruga_moving_measure(ruga_moving* moving, double time, const double* x, ruga_report* report);
 

@@ -5,14 +5,16 @@
 // every 24 iterations from a Hessian with half of the compressive geometric stiffness taken out (the exact one is
 // indefinite while wrinkles move); the last certified exact factor starts the next frame. A KKT solve returns steps
 // with H d = 0, so every iterate stays feasible. facts: a wrinkled valley is curved on the scale of the thickness,
-// so any quadratic model serves for about 0.2 h only; cheap steps with a fresh enough factor win over Newton's.
+// so any quadratic model serves for about 0.2 h only; cheap steps with a fresh enough factor win over Newton's. What
+// takes 240 of them, or six factors that serve for one each, is no wrinkle but a stiff panel that turns: where the
+// Hessian is convex Newton's leaps go on.
 #include "core/wide.h"
 #include "solver/skin.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { PAIRS = 8, REFRESH = 24, MAX_ITERATIONS = 3000 };
+enum { PAIRS = 8, REFRESH = 24, SLOW = 240, MOST_IN_VAIN = 6, MAX_ITERATIONS = 3000 };
 enum { GRADIENT, PROJECTED, DIRECTION, OLD_PROJECTED, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
 
 typedef struct memory {
@@ -91,7 +93,7 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
     double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
     memory m = {.newest = -1};
     double score = 0, move;
-    int failures = 0;
+    int failures = 0, hand_over = SLOW, in_vain = 0; // renewals in a row that served one step only
     double target = tolerance;
     result->outcome = RUGA_OUTCOME_NOT_CONVERGED;
     RUGA_TRY(ruga_skin_energy(skin, x, &result->terms, gradient));
@@ -112,6 +114,15 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
             }
             score = REFRESH;
         }
+        if (score >= REFRESH && (k >= hand_over || in_vain >= MOST_IN_VAIN)) {
+            RUGA_TRY(ruga_newton_minimize(skin, x, tolerance, certify, true, result));
+            if (result->outcome != RUGA_OUTCOME_NOT_CONVERGED) {
+                return RUGA_OK;
+            }
+            RUGA_TRY(ruga_skin_energy(skin, x, &result->terms, gradient));
+            hand_over = k + SLOW;
+            in_vain = 0;
+        }
         if (score >= REFRESH) {
             RUGA_TRY(ruga_skin_factor_convex(skin, x));
             m = (memory){.newest = -1};
@@ -121,6 +132,7 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
         RUGA_TRY(iterate(skin, &m, x, gradient, projected, &result->terms, &move));
         // A first step that is far too long or hardly taken: the old factor is of no use here.
         bool useless = score == 0 && (move > 2 * skin->model->skin.thickness || m.step < 0.2) && failures == 0;
+        in_vain = useless ? in_vain + 1 : 0;
         score = useless || m.step == 0 ? REFRESH : score + 1 + (m.step < 0.35);
         failures = m.step * move <= 0x1p-52 * skin->model->extent ? failures + 1 : 0;
         skin->single_serves = skin->single_serves && failures == 0;

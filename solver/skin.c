@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-RUGA_WIDE double ruga_dot_product(int n, const double* a, const double* b) {
+RUGA_WIDE static double dot_product(int n, const double* a, const double* b) {
     // Sixteen sums let the compiler use vector registers and hide their latency; their order is fixed.
     enum { SUMS = 16 };
     double s[SUMS] = {0};
@@ -33,6 +33,10 @@ RUGA_WIDE double ruga_dot_product(int n, const double* a, const double* b) {
         }
     }
     return s[0];
+}
+
+double ruga_dot_product(int n, const double* a, const double* b) {
+    return dot_product(n, a, b);
 }
 
 double ruga_largest_move(int n, const double* d) {
@@ -543,13 +547,12 @@ static ruga_status factorize(ruga_skin* skin, double shift, bool in_single) {
     return RUGA_OK;
 }
 
-ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
+static ruga_status assemble_stiffness(ruga_skin* skin, const double* x, double clamp) {
     double begin = ruga_clock();
     const ruga_model* model = skin->model;
     const ruga_sparse* pattern = ruga_shell_pattern(skin->shell);
-    ruga_shell_energies shell;
     double external = 0;
-    RUGA_TRY(ruga_shell_energy(skin->shell, x, clamp, &shell, NULL, skin->stiffness));
+    RUGA_TRY(ruga_shell_energy(skin->shell, x, clamp, NULL, NULL, skin->stiffness));
     if (skin->coupling) {
         ruga_shell_coupling(skin->shell, skin->coupling);
     }
@@ -563,10 +566,15 @@ ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
     for (int j = 0; j < skin->n && skin->proximal > 0; j++) {
         skin->stiffness[pattern->start[j]] += skin->proximal * model->vertex_area[j / 3];
     }
-    if (model->solves_skin) {
+    skin->work.seconds_assembly += ruga_clock() - begin;
+    return RUGA_OK;
+}
+
+ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp) {
+    RUGA_TRY(assemble_stiffness(skin, x, clamp));
+    if (skin->model->solves_skin) {
         fill_kkt(skin, 0);
     }
-    skin->work.seconds_assembly += ruga_clock() - begin;
     return RUGA_OK;
 }
 
@@ -585,7 +593,7 @@ static ruga_status factorize_surely(ruga_skin* skin, double shift) {
 }
 
 ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift) {
-    RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
+    RUGA_TRY(assemble_stiffness(skin, x, clamp));
     RUGA_TRY(factorize_surely(skin, shift));
     skin->factor_exact = clamp == 0 && shift == 0;
     return RUGA_OK;
@@ -598,7 +606,7 @@ ruga_status ruga_skin_refactor(ruga_skin* skin, double shift) {
 
 // Without a shift and a proof: an initial inverse.
 static ruga_status factor_single(ruga_skin* skin, const double* x, double clamp) {
-    RUGA_TRY(ruga_skin_assemble(skin, x, clamp));
+    RUGA_TRY(assemble_stiffness(skin, x, clamp));
     RUGA_TRY(factorize(skin, 0, true));
     skin->single_serves = skin->single_serves && skin->info.zero == 0;
     skin->factor_exact = false;

@@ -65,13 +65,10 @@ typedef struct ruga_skin {
 
 ruga_status ruga_skin_create(const ruga_model* model, ruga_skin** skin);
 void ruga_skin_destroy(ruga_skin** skin);
-
-// Another factor of the same pattern, analysed.
-ruga_status ruga_skin_create_factor(const ruga_skin* skin, ruga_factor** factor);
+ruga_status ruga_skin_create_factor(const ruga_skin* skin, ruga_factor** factor); // another one, analysed
 
 // Energy at x; the full gradient [n] where not NULL (held components are not zeroed).
 ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* terms, double* gradient);
-
 // Tells the hinges of creases that x is the state now: what they follow.
 void ruga_skin_follow(ruga_skin* skin, const double* x);
 // force [handles][3] N, on the skin: the reactions that gradient and constraints leave at what each handle holds.
@@ -79,8 +76,7 @@ ruga_status ruga_skin_handle_forces(ruga_skin* skin, const double* x, double* fo
 
 // Assembles K at x (clamp as in shell.h) into stiffness and kkt; the factor stays as it is.
 ruga_status ruga_skin_assemble(ruga_skin* skin, const double* x, double clamp);
-// Assembles, adds shift times vertex area to the diagonal, and factorises, in single precision while that proves the
-// inertia. See factor_right.
+// Assembles, adds shift times vertex area to the diagonal, and factorises, in single precision where that proves inertia.
 ruga_status ruga_skin_factor(ruga_skin* skin, const double* x, double clamp, double shift);
 ruga_status ruga_skin_refactor(ruga_skin* skin, double shift); // the same K with another shift
 // Tries clamp 0.5, then 1, in single precision while that serves, then in double, then shifts: the inertia is right.
@@ -91,8 +87,7 @@ ruga_status ruga_skin_shift_until_right(ruga_skin* skin);
 
 // d = the first n of [K H^T; H 0]^-1 [r; 0], with held components of r taken as 0: H d = 0.
 ruga_status ruga_skin_solve(ruga_skin* skin, const double* r, double* d);
-// Near that, as the factor in single precision stands, then projected: symmetric for r that are projected, H d = 0 to
-// round-off.
+// Near that, as the factor in single precision stands, for projected r: symmetric, and H d = 0 to round-off.
 ruga_status ruga_skin_solve_rough(ruga_skin* skin, const double* r, double* d);
 // The full system: sides [size], right with 0 for the directors.
 ruga_status ruga_skin_solve_system(ruga_skin* skin, const double* right, double* left);
@@ -121,7 +116,7 @@ typedef struct ruga_skin_result {
 ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                ruga_skin_result* result);
 ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
-                                 ruga_skin_result* result);
+                                 bool while_convex, ruga_skin_result* result); // until the Hessian is not
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result);
 ruga_status ruga_paper_minimize(ruga_skin* skin, double* x, double tolerance, ruga_skin_result* result);

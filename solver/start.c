@@ -125,12 +125,8 @@ const double* ruga_start_shape(const ruga_model* model) {
     return model->started ? model->started : model->mesh.position;
 }
 
-double ruga_start_angle(const ruga_model* model, int h) {
-    return model->creases->drawn[h] + turn_of(model, h);
-}
-
 void ruga_start_hinges(const ruga_model* model, ruga_hinges* hinges) {
     for (int h = 0; h < hinges->count; h++) {
-        hinges->near[h] = hinges->rest[h] = ruga_start_angle(model, h);
+        hinges->near[h] = hinges->rest[h] = model->creases->drawn[h] + turn_of(model, h);
     }
 }

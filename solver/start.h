@@ -13,9 +13,7 @@
 ruga_status ruga_start_create(ruga_model* model);
 // [V][3] m
 const double* ruga_start_shape(const ruga_model* model);
-// The angle that hinge h of the creases has there, followed through half a turn, rad.
-double ruga_start_angle(const ruga_model* model, int h);
-// Hinges that are followed from there, and rest as they stand.
+// Hinges that are followed from there, through half a turn, and rest as they stand.
 void ruga_start_hinges(const ruga_model* model, ruga_hinges* hinges);
 
 #endif

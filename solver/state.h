@@ -10,10 +10,15 @@
 #include "solver/skin.h"
 
 struct ruga_state {
-    const ruga_model* model;
+    const ruga_model* whole; // what it was created for
+    int stage;               // of it (stages.h)
+    const ruga_model* model; // of that stage: sizes below are of this one
     int frame;
     double time;
+    double dt;        // s, of the part of a frame that is stepped
     double* x;        // [V][3] skin: with creases its nodes
+    double* spread;   // [V of the whole][3] where creases come later: the same, at the nodes of the whole
+    double *angle, *rest; // [segments of the whole] rad, likewise; NULL where none come later
     double* shown;    // [vertices shown][3] with creases; NULL = x
     double* shown_embedded;
     double* embedded; // [V][3] B q
@@ -29,6 +34,12 @@ struct ruga_state {
     double* strain;                                 // [F] work: compressive strain of the embedded surface
     ruga_report start;                              // of frame 0
 };
+
+// A state of a stage of its model, as the skin starts, and what is shown of it once it has changed.
+ruga_status ruga_state_make(const ruga_model* whole, int stage, ruga_state** state);
+void ruga_state_show(ruga_state* state);
+// Cuts the creases that come next.
+ruga_status ruga_state_enter_next_stage(ruga_state* state);
 
 // Restart vector: all that the next frame depends on besides the model.
 int ruga_state_restart_size(const ruga_model* model);

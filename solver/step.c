@@ -10,6 +10,7 @@
 #include "core/vec3.h"
 #include "lattice/motion.h"
 #include "lattice/svd3.h"
+#include "solver/stages.h"
 #include "solver/start.h"
 #include "solver/state.h"
 
@@ -17,228 +18,6 @@
 #include <string.h>
 
 enum { MAX_SUBSTEPS = 1000 };
-
-// ---- life ----------------------------------------------------------------------------------------------
-
-static ruga_status create_vectors(ruga_state* state) {
-    const ruga_model* model = state->model;
-    size_t n = 3 * (size_t)model->mesh.vertex_count, nodes = 3 * (size_t)model->lattice.node_count;
-    RUGA_TRY(RUGA_NEW_ZERO(state->deviation, 3 * (size_t)model->dense.volume.node_count));
-    RUGA_TRY(RUGA_NEW_ZERO(state->displacement, 3 * (size_t)model->dense.volume.node_count));
-    RUGA_TRY(RUGA_NEW_ZERO(state->x, n));
-    RUGA_TRY(RUGA_NEW_ZERO(state->embedded, n));
-    RUGA_TRY(RUGA_NEW_ZERO(state->next_embedded, n));
-    RUGA_TRY(RUGA_NEW_ZERO(state->old_x, n));
-    RUGA_TRY(RUGA_NEW_ZERO(state->anchor, n));
-    if (model->creases) {
-        RUGA_TRY(RUGA_NEW_ZERO(state->shown, 3 * (size_t)ruga_model_shown(model)->vertex_count));
-        RUGA_TRY(RUGA_NEW_ZERO(state->shown_embedded, 3 * (size_t)ruga_model_shown(model)->vertex_count));
-    }
-    RUGA_TRY(RUGA_NEW_ZERO(state->q, nodes));
-    RUGA_TRY(RUGA_NEW_ZERO(state->v, nodes));
-    RUGA_TRY(RUGA_NEW_ZERO(state->old_q, nodes));
-    return RUGA_NEW_ZERO(state->strain, model->mesh.triangle_count);
-}
-
-// What is shown follows what moves.
-static void show(ruga_state* state) {
-    const ruga_creases* creases = state->model->creases;
-    if (creases) {
-        ruga_cut_material(&creases->cut, state->x, state->shown);
-        ruga_cut_material(&creases->cut, state->embedded, state->shown_embedded);
-    }
-}
-
-static void set_start(ruga_state* state) {
-    const ruga_model* model = state->model;
-    size_t n = 3 * (size_t)model->mesh.vertex_count;
-    memcpy(state->x, ruga_start_shape(model), n * sizeof *state->x);
-    memcpy(state->embedded, ruga_start_shape(model), n * sizeof *state->x);
-    if (!model->has_interior) {
-        if (state->skin->hinges) {
-            ruga_start_hinges(model, state->skin->hinges);
-        }
-        return;
-    }
-    memcpy(state->q, model->lattice.rest, 3 * (size_t)model->lattice.node_count * sizeof *state->q);
-    ruga_lattice_embed(&model->lattice, state->q, state->embedded);
-    memcpy(state->x, state->embedded, n * sizeof *state->x);
-}
-
-static ruga_status create_state(const ruga_model* model, ruga_state** out) {
-    ruga_status status = RUGA_OK;
-    ruga_state* state = NULL;
-    RUGA_TRY(RUGA_NEW_ZERO(state, 1));
-    state->model = model;
-    RUGA_TRY_DONE(create_vectors(state));
-    RUGA_TRY_DONE(ruga_progress("analysing the skin", 0));
-    RUGA_TRY_DONE(ruga_skin_create(model, &state->skin));
-    state->skin->embedded = state->embedded;
-    state->skin->anchor = state->anchor;
-    if (model->has_interior && !ruga_model_is_prescribed(model)) {
-        RUGA_TRY_DONE(ruga_progress("analysing the interior", 0));
-        RUGA_TRY_DONE(ruga_interior_create(model, state->skin, &state->interior));
-    }
-    if (model->dense.volume.node_count > 0) {
-        RUGA_TRY_DONE(ruga_progress("analysing the volume", 0));
-        RUGA_TRY_DONE(ruga_volume_solver_create(&model->dense.volume, model->dense.held, model->solver.seed,
-                                                &state->volume));
-    }
-    set_start(state);
-    if (model->skin.motion == RUGA_SKIN_DYNAMIC) {
-        RUGA_TRY_DONE(ruga_moving_create(model, state->skin, &state->moving));
-        RUGA_TRY_DONE(ruga_moving_start(state->moving, state->x));
-    }
-done:
-    if (status != RUGA_OK) {
-        ruga_state_destroy(&state);
-    }
-    *out = state;
-    return status;
-}
-
-void ruga_state_destroy(ruga_state** state_pointer) {
-    ruga_state* state = *state_pointer;
-    if (!state) {
-        return;
-    }
-    ruga_interior_destroy(&state->interior);
-    ruga_moving_destroy(&state->moving);
-    ruga_skin_destroy(&state->skin);
-    ruga_volume_solver_destroy(&state->volume);
-    void* const owned[] = {state->x,
-                           state->embedded,
-                           state->q,
-                           state->v,
-                           state->old_q,
-                           state->old_x,
-                           state->next_embedded,
-                           state->anchor,
-                           state->strain,
-                           state->deviation,
-                           state->displacement,
-                           state->shown,
-                           state->shown_embedded};
-    for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) {
-        ruga_release(owned[i]);
-    }
-    ruga_release(state);
-    *state_pointer = NULL;
-}
-
-int ruga_state_frame(const ruga_state* state) {
-    return state->frame;
-}
-
-double ruga_state_time(const ruga_state* state) {
-    return state->time;
-}
-
-const double* ruga_state_positions(const ruga_state* state) {
-    return state->shown ? state->shown : state->x;
-}
-
-const double* ruga_state_embedded(const ruga_state* state) {
-    return state->shown ? state->shown_embedded : state->embedded;
-}
-
-const double* ruga_state_crease_angles(const ruga_state* state) {
-    return state->skin->hinges ? state->skin->hinges->near : NULL;
-}
-
-const double* ruga_state_crease_rests(const ruga_state* state) {
-    return state->skin->hinges ? state->skin->hinges->rest : NULL;
-}
-
-double ruga_state_gap(const ruga_state* state) {
-    return state->model->creases ? ruga_cut_gap(&state->model->creases->cut, state->x) : 0;
-}
-
-void ruga_state_segment_gaps(const ruga_state* state, double* gap) {
-    const ruga_creases* creases = state->model->creases;
-    for (int h = 0; creases && h < creases->segment_count; h++) {
-        const int* end = creases->cut.segment[creases->segment[h]].end;
-        gap[h] = fmax(ruga_cut_gap_at(&creases->cut, end[0], state->x),
-                      ruga_cut_gap_at(&creases->cut, end[1], state->x));
-    }
-}
-
-ruga_status ruga_state_handle_forces(ruga_state* state, double* force) {
-    for (int i = 0; i < 3 * state->model->handle_count && state->moving; i++) {
-        force[i] = NAN; // seams and damping push, too, in impulses that no one sums
-    }
-    return state->moving ? RUGA_OK : ruga_skin_handle_forces(state->skin, state->x, force);
-}
-
-const double* ruga_state_lattice(const ruga_state* state) {
-    return state->model->has_interior ? state->q : NULL;
-}
-
-// ---- restart -------------------------------------------------------------------------------------------
-
-enum { RESTART_SCALARS = 5 }; // frame, time, shift memory, proximal factor, whether a kept factor exists
-
-int ruga_state_restart_size(const ruga_model* model) {
-    return RESTART_SCALARS + 3 * model->mesh.vertex_count + 6 * model->lattice.node_count +
-           3 * model->dense.volume.node_count + ruga_hinges_restart_size(model->creases) +
-           ruga_moving_restart_size(model);
-}
-
-void ruga_state_save(const ruga_state* state, double* restart) {
-    size_t n = 3 * (size_t)state->model->mesh.vertex_count,
-           nodes = 3 * (size_t)state->model->lattice.node_count;
-    *restart++ = state->frame;
-    *restart++ = state->time;
-    *restart++ = state->skin->shift_memory;
-    *restart++ = state->skin->proximal;
-    bool kept = state->skin->factor_exact && state->skin->factor_right;
-    *restart++ = kept ? 1 + state->skin->in_single : 0;
-    memcpy(restart, state->x, n * sizeof *restart);
-    memcpy(restart + n, state->q, nodes * sizeof *restart);
-    memcpy(restart + n + nodes, state->v, nodes * sizeof *restart);
-    memcpy(restart + n + 2 * nodes, state->deviation,
-           3 * (size_t)state->model->dense.volume.node_count * sizeof *restart);
-    if (state->skin->hinges) {
-        ruga_hinges_save(state->skin->hinges,
-                         restart + n + 2 * nodes + 3 * (size_t)state->model->dense.volume.node_count);
-    }
-    if (state->moving) { // last of all
-        int size = ruga_state_restart_size(state->model) - RESTART_SCALARS;
-        ruga_moving_save(state->moving, restart + size - ruga_moving_restart_size(state->model));
-    }
-}
-
-ruga_status ruga_state_load(ruga_state* state, const double* restart) {
-    const ruga_model* model = state->model;
-    size_t n = 3 * (size_t)model->mesh.vertex_count, nodes = 3 * (size_t)model->lattice.node_count;
-    state->frame = (int)restart[0];
-    state->time = restart[1];
-    state->skin->shift_memory = restart[2];
-    state->skin->proximal = restart[3];
-    bool kept = restart[4] > 0;
-    state->skin->single_proves = restart[4] > 1; // as then
-    restart += RESTART_SCALARS;
-    memcpy(state->x, restart, n * sizeof *restart);
-    memcpy(state->q, restart + n, nodes * sizeof *restart);
-    memcpy(state->v, restart + n + nodes, nodes * sizeof *restart);
-    memcpy(state->deviation, restart + n + 2 * nodes,
-           3 * (size_t)model->dense.volume.node_count * sizeof *restart);
-    if (state->skin->hinges) {
-        ruga_hinges_load(state->skin->hinges,
-                         restart + n + 2 * nodes + 3 * (size_t)model->dense.volume.node_count);
-    }
-    if (state->moving) {
-        int size = ruga_state_restart_size(model) - RESTART_SCALARS;
-        ruga_moving_load(state->moving, restart + size - ruga_moving_restart_size(model));
-    }
-    if (model->has_interior) {
-        ruga_lattice_embed(&model->lattice, state->q, state->embedded);
-    }
-    state->skin->time = state->time;
-    show(state);
-    // The factor that the next frame starts from is made again from the state it was made at.
-    return kept && model->solves_skin ? ruga_skin_factor(state->skin, state->x, 0, 0) : RUGA_OK;
-}
 
 // ---- how far a step goes -------------------------------------------------------------------------------
 
@@ -345,7 +124,8 @@ static void set_handle_targets(ruga_state* state) {
             ruga_handle_target(&model->handles[h], state->skin->time, ruga_start_shape(model) + 3 * (size_t)v,
                                target);
             bool follows = model->has_interior && model->handles[h].hold != RUGA_HOLD_SKIN;
-            state->skin->target[i] = follows ? state->embedded[i] : target[axis];
+            bool anchored = h == model->handle_count; // where it is: stages choose other nodes for it
+            state->skin->target[i] = follows ? state->embedded[i] : anchored ? state->x[i] : target[axis];
         }
     }
 }
@@ -448,7 +228,7 @@ static int parts_to_pose(ruga_state* state, const double* q) {
 
 // Parts that creases need: no rest angle moves too far in one.
 static int begin_hinges(ruga_state* state) {
-    double dt = state->model->step;
+    double dt = state->dt;
     return state->skin->hinges ? ruga_hinges_begin(state->skin->hinges, state->time + dt, dt) : 1;
 }
 
@@ -459,7 +239,7 @@ static void advance_hinges(ruga_state* state, int k, int parts) {
 }
 
 static ruga_status step_prescribed(ruga_state* state, ruga_report* report) {
-    double begin = state->time, dt = state->model->step;
+    double begin = state->time, dt = state->dt;
     pose_at(state, begin + dt, state->q);
     int parts = parts_to_pose(state, state->q), folds = begin_hinges(state);
     parts = report->substeps = parts > folds ? parts : folds;
@@ -544,7 +324,7 @@ static ruga_status settle(ruga_state* state) {
 }
 
 static ruga_status step_shell(ruga_state* state, ruga_report* report) {
-    double begin = state->time, dt = state->model->step;
+    double begin = state->time, dt = state->dt;
     int parts = report->substeps = begin_hinges(state);
     for (int k = 1; k <= parts; k++) {
         state->skin->time = k == parts ? begin + dt : begin + dt * k / parts;
@@ -618,7 +398,7 @@ static ruga_status step_part(ruga_state* state, double dt, ruga_report* report) 
 // The whole step is predicted first, with the skin following: what that would do to the surface tells how
 // many parts the step needs.
 static ruga_status step_coupled(ruga_state* state, ruga_report* report) {
-    double begin = state->time, dt = state->model->step;
+    double begin = state->time, dt = state->dt;
     int parts = 1, folds = begin_hinges(state);
     RUGA_TRY(predict_part(state, begin + dt, dt, report));
     if (state->model->solver.method != RUGA_METHOD_PAPER) {
@@ -647,26 +427,58 @@ static double kinetic_energy(ruga_state* state) {
     return 0.5 * ruga_dot_product(in->n, state->v, state->old_q);
 }
 
-ruga_status ruga_state_step(const ruga_model* model, ruga_state* state, ruga_report* report) {
-    RUGA_ASSERT(state->model == model);
-    ruga_report unused, *out = report ? report : &unused;
-    *out = (ruga_report){0};
+static ruga_status step_part_of_frame(ruga_state* state, ruga_report* report) {
+    const ruga_model* model = state->model;
     double begin = ruga_clock();
+    *report = (ruga_report){0};
     state->skin->work = (ruga_skin_work){0};
     if (state->moving) {
-        RUGA_TRY(ruga_moving_step(state->moving, state->time, state->x, out));
+        RUGA_TRY(ruga_moving_step(state->moving, state->time, state->dt, state->x, report));
     } else if (!model->has_interior) {
-        RUGA_TRY(step_shell(state, out));
+        RUGA_TRY(step_shell(state, report));
     } else if (ruga_model_is_prescribed(model)) {
-        RUGA_TRY(step_prescribed(state, out));
+        RUGA_TRY(step_prescribed(state, report));
     } else {
-        RUGA_TRY(step_coupled(state, out));
+        RUGA_TRY(step_coupled(state, report));
+    }
+    finish_report(state, begin, report);
+    return RUGA_OK;
+}
+
+static void add_work(const ruga_report* before, ruga_report* report) {
+    worse_outcome(report, before->outcome);
+    report->substeps += before->substeps;
+    report->newton_iterations += before->newton_iterations;
+    report->linear_iterations += before->linear_iterations;
+    report->factorizations += before->factorizations;
+    report->seconds_total += before->seconds_total;
+    report->seconds_assembly += before->seconds_assembly;
+    report->seconds_factor += before->seconds_factor;
+    report->seconds_solve += before->seconds_solve;
+    report->seconds_other += before->seconds_other;
+}
+
+// A frame, in parts where creases come within it.
+ruga_status ruga_state_step(const ruga_model* whole, ruga_state* state, ruga_report* report) {
+    RUGA_ASSERT(state->whole == whole);
+    ruga_report part, unused, *out = report ? report : &unused;
+    *out = (ruga_report){0};
+    for (double at = state->frame, end = 0; at < state->frame + 1; at = end) {
+        while (state->stage < whole->stage_count && whole->stage[state->stage].end <= at) {
+            RUGA_TRY(ruga_state_enter_next_stage(state));
+        }
+        end = state->frame + 1;
+        if (state->stage < whole->stage_count) {
+            end = fmin(end, whole->stage[state->stage].end);
+        }
+        state->dt = (end - at) * whole->step;
+        RUGA_TRY(step_part_of_frame(state, &part));
+        add_work(out, &part);
+        *out = part;
+        state->time = state->skin->time = end * whole->step;
     }
     state->frame++;
-    state->time = state->frame * model->step;
-    state->skin->time = state->time;
-    show(state);
-    finish_report(state, begin, out);
+    ruga_state_show(state);
     out->energy_kinetic = state->moving ? out->energy_kinetic : kinetic_energy(state);
     return RUGA_OK;
 }
@@ -692,10 +504,10 @@ ruga_status ruga_state_measure(ruga_state* state, ruga_report* report) {
 
 ruga_status ruga_state_create(const ruga_model* model, ruga_state** out) {
     *out = NULL;
-    RUGA_TRY(create_state(model, out));
-    ruga_status status = model->has_interior && ruga_model_is_prescribed(model) ? settle(*out) : RUGA_OK;
+    RUGA_TRY(ruga_state_make(model, 0, out));
+    ruga_status status = ruga_model_is_prescribed(model) ? settle(*out) : RUGA_OK;
     if (status == RUGA_OK) {
-        show(*out);
+        ruga_state_show(*out);
     }
     if (status != RUGA_OK) {
         ruga_state_destroy(out);

@@ -12,7 +12,8 @@
 // elsewhere, and H alone is singular where a cut parts panels.) The exact Hessian is taken where the factor's
 // inertia is that of a minimum on the null space of the rows, 3 rows negative pivots; otherwise the
 // semi-definite one with a shift that grows until the inertia is right. Steps are capped at half an edge, and
-// shortened by Armijo's rule.
+// shortened by Armijo's rule. Of motion in a drag each step minimises E + sum m drag/2 |x - x_old|^2, drag in
+// 1/s^2 the drag per mass over the time step.
 #include "tests/creased.h"
 
 #include "core/memory.h"
@@ -31,8 +32,9 @@ static const double BLIND = 1e-10;      // of the energies' size
 static const double FIRST_SHIFT = 1e-9; // of the largest diagonal entry
 static const double CAP = 0.5;          // mean edges
 static const double FORCE_FLOOR = 1e-8; // of E h times the mean edge
+static const double EASING = 1.6;       // by which steps of motion grow
 
-enum { MOST_STALE = 8, MOST_HALVINGS = 34, MOST_SHIFTS = 7 };
+enum { MOST_STALE = 8, MOST_HALVINGS = 34, MOST_SHIFTS = 7, SETTLING = 10 };
 
 struct ruga_creased {
     ruga_creased_def def;
@@ -44,7 +46,8 @@ struct ruga_creased {
     double *stiffness, *rest;     // [hinges]
     double *near, *trial_near;    // [hinges] followed angles
     bool followed;
-    double* mass; // [nodes]
+    double* mass;       // [nodes]
+    double drag, *from; // 1/s^2; [3 nodes] where the step began
     double edge, force_scale;
     ruga_sparse pattern; // of the whole system
     ruga_factor* factor;
@@ -71,6 +74,7 @@ void ruga_creased_destroy(ruga_creased** creased) {
     ruga_release(c->near);
     ruga_release(c->trial_near);
     ruga_release(c->mass);
+    ruga_release(c->from);
     ruga_sparse_clear(&c->pattern);
     ruga_factor_destroy(&c->factor);
     ruga_release(c->right);
@@ -214,6 +218,7 @@ static ruga_status allocate(ruga_creased* c) {
     RUGA_TRY(RUGA_NEW_ZERO(c->near, c->hinge_count));
     RUGA_TRY(RUGA_NEW(c->trial_near, c->hinge_count));
     RUGA_TRY(RUGA_NEW(c->mass, c->nodes));
+    RUGA_TRY(RUGA_NEW(c->from, 3 * (size_t)c->nodes));
     RUGA_TRY(RUGA_NEW(c->right, c->unknowns));
     RUGA_TRY(RUGA_NEW(c->step, c->unknowns));
     RUGA_TRY(RUGA_NEW(c->trial, c->unknowns));
@@ -245,7 +250,7 @@ done:
 // ------------------------------------------------------------------------------- energy
 
 typedef struct energies {
-    double membrane, bending, hinge, external, force_square;
+    double membrane, bending, hinge, external, drag, force_square;
 } energies;
 
 static void add_block(ruga_creased* c, int i, int j, const double block[9]) {
@@ -316,6 +321,21 @@ static void add_hinges(ruga_creased* c, const double* x, double clamp, bool seco
     }
 }
 
+static void add_drag(ruga_creased* c, const double* x, bool second, energies* e) {
+    for (int i = 0; i < 3 * c->nodes; i++) {
+        double k = c->drag * c->mass[i / 3], d = x[i] - c->from[i];
+        e->drag += 0.5 * k * d * d;
+        c->gradient[i] += k * d;
+        if (second) {
+            c->pattern.value[c->pattern.start[i]] += k;
+        }
+    }
+}
+
+static double total(const energies* e) {
+    return e->membrane + e->bending + e->hinge + e->external + e->drag;
+}
+
 // Energies at x; c->gradient [3 nodes] is set, and with `second` the system's matrix without a shift.
 static double evaluate(ruga_creased* c, const double* x, double clamp, bool second, energies* e) {
     const ruga_sewing* s = &c->sewing;
@@ -331,13 +351,16 @@ static double evaluate(ruga_creased* c, const double* x, double clamp, bool seco
         ruga_add_scaled(-c->mass[n], c->def.gravity, c->gradient + 3 * (size_t)n);
         e->force_square += c->mass[n] * c->mass[n] * ruga_dot(c->def.gravity, c->def.gravity);
     }
+    if (c->drag > 0) {
+        add_drag(c, x, second, e);
+    }
     for (int r = 0; second && r < s->row_count; r++) {
         for (int k = s->start[r]; k < s->start[r + 1]; k++) {
             const double w = s->weight[k], block[9] = {w, 0, 0, 0, w, 0, 0, 0, w};
             add_block(c, c->nodes + r, s->node[k], block);
         }
     }
-    return e->membrane + e->bending + e->hinge + e->external;
+    return total(e);
 }
 
 // Held nodes keep their place: a diagonal of their own, and nothing else in row and column.
@@ -411,8 +434,8 @@ static ruga_status solve_step(ruga_creased* c, const double* x, const energies* 
 
 // Takes as much of the step as lowers the energy enough; false where nothing does.
 static bool search(ruga_creased* c, double* x, const energies* now) {
-    double slope = 0, longest = 0, energy = now->membrane + now->bending + now->hinge + now->external;
-    double magnitude = now->membrane + now->bending + now->hinge + fabs(now->external);
+    double slope = 0, longest = 0, energy = total(now);
+    double magnitude = now->membrane + now->bending + now->hinge + fabs(now->external) + now->drag;
     energies e;
     for (int n = 0; n < c->nodes; n++) {
         slope += c->fixed[n] ? 0 : ruga_dot(c->gradient + 3 * (size_t)n, c->step + 3 * (size_t)n);
@@ -472,4 +495,22 @@ ruga_status ruga_creased_solve(ruga_creased* c, const double* rest, double* x, r
             return RUGA_OK;
         }
     }
+}
+
+ruga_status ruga_creased_settle(ruga_creased* c, const double* rest, double* x, ruga_creased_report* report) {
+    int iterations = 0, factorizations = 0;
+    ruga_status status = RUGA_OK;
+    c->drag =
+        ruga_norm(c->def.gravity) / (CAP * c->edge); // what falls freely falls by that much in the first step
+    for (int step = 0; step <= SETTLING && status == RUGA_OK; step++) {
+        memcpy(c->from, x, 3 * (size_t)c->nodes * sizeof *x);
+        status = ruga_creased_solve(c, rest, x, report);
+        iterations += report->iterations;
+        factorizations += report->factorizations;
+        c->drag = step + 1 < SETTLING ? c->drag / EASING : 0;
+    }
+    c->drag = 0;
+    report->iterations = iterations;
+    report->factorizations = factorizations;
+    return status;
 }

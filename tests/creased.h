@@ -15,7 +15,7 @@ typedef struct ruga_creased_def {
     const ruga_cut* cut;
     ruga_skin_def skin;      // thickness, young, poisson, density, membrane
     const double* stiffness; // [segments] N, of the creases; entries of auxiliary chords are not looked at
-    const bool* fixed;       // [nodes] held where they are, or NULL. Of a clamped vertex hold all copies
+    const bool* fixed;       // [nodes] held where they are, or NULL. Of a clamped line hold all copies
     double gravity[3];       // m/s^2
     double tolerance;        // residual over the forces of all elements
     int iterations;          // at most
@@ -40,6 +40,10 @@ void ruga_creased_destroy(ruga_creased** creased);
 // data.
 ruga_status ruga_creased_solve(ruga_creased* creased, const double* rest, double* x,
                                ruga_creased_report* report);
+// The same along the path of a body that a drag holds back so much that it has no momentum: implicit steps,
+// longer and longer. Of many equilibria meshes that differ find the same one so, while a static solve leaps.
+ruga_status ruga_creased_settle(ruga_creased* creased, const double* rest, double* x,
+                                ruga_creased_report* report);
 // Angle of each segment as it was followed, rad; borrowed.
 const double* ruga_creased_angles(const ruga_creased* creased);
 

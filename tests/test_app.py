@@ -143,6 +143,11 @@ class Case(unittest.TestCase):
         return json.loads(self.ruga(*arguments, "--json", status=status).stdout)
 
 
+def contents(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
 class Help(Case):
     def test_help_teaches_a_session_that_runs(self):
         text = self.ruga("--help").stdout
@@ -541,6 +546,33 @@ time:     {frames: 1}
                     self.assertAlmostEqual(math.dist(rest[a], rest[b]), length, delta=1e-15)
         self.ruga("run", scene, "-o", "other.h5", "--frames", 2, "--threads", 1)
         self.refused("run", scene, "-o", "other.h5", "--resume", "--set", "creases.0.hinge.scale=0.5", saying="scene")
+
+    def test_creases_are_added_to_a_result(self):
+        crease = ("  - curve: {{polyline: [[{0}, -1, 0], [{1}, 1, 0]]}}\n"
+                  "    hinge: {{stiffness: 0.2 N, rest: {2} deg, yield: 5 deg}}\n    start: {3} s\n")
+        text = ("ruga: 1\nmesh: {make: {shape: sheet, size: [20 cm, 14 cm], edge: 15 mm}}\n"
+                "skin: {thickness: 0.3 mm, young: 1 GPa}\ninterior: none\ntime: {step: 0.1 s, frames: 4}\n"
+                "handles: [{region: {box: [[-1, -1, -1], [-9.9 cm, 1, 1]]}, fix: true}]\ncreases:\n")
+        text += crease.format("-4 cm", "-3 cm", 60, 0.15)
+        scene = self.write("adds.yaml", text)
+        self.ruga("run", scene, "-o", "adds.h5")
+        before = contents(self.path("adds.h5"))
+        for more, saying in ((crease.format("2 cm", "3 cm", -80, 0.3), "creases.1 comes at 0.3 s"),
+                             (crease.format("-60 cm", "53 cm", 80, 0.4), "creases.1, or a crease behind it, needs"),
+                             (crease.format("2 cm", "3 cm", 80, 0.4).replace("yield: 5", "yield: 6") + "gravity: [0, 0, -1]\n",
+                              "another scene")):
+            self.write("adds.yaml", text + more)
+            self.refused("run", scene, "-o", "adds.h5", "--resume", "--frames", 6, saying=saying)
+            self.assertEqual(contents(self.path("adds.h5")), before)
+        self.write("adds.yaml", text + crease.format("2 cm", "3 cm", -80, 0.4))
+        self.ruga("run", scene, "-o", "adds.h5", "--resume", "--frames", 5)
+        self.write("adds.yaml", text + crease.format("2 cm", "3 cm", -80, 0.4) + crease.format("6 cm", "6.5 cm", 70, 0.55))
+        self.ruga("run", scene, "-o", "adds.h5", "--resume", "--frames", 8)
+        self.ruga("run", scene, "-o", "whole.h5", "--frames", 8)
+        self.assert_same(self.path("whole.h5"), self.path("adds.h5"))
+        angles = [c["angle_mean"] for c in self.json("measure", "adds.h5")["creases"]]
+        for angle, wanted in zip(angles, (60, -80, 70), strict=True):
+            self.assertAlmostEqual(angle, wanted * math.pi / 180, delta=0.05)
 
     def test_same_bits_for_any_number_of_threads(self):
         first = self.run_scene("0.h5", "--threads", 1, "--frames", 6)

@@ -2,11 +2,14 @@
 // Copyright (c) 2026 The Ruga authors
 #include "tests/check.h"
 
+#include "core/lanes.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/random.h"
 #include "core/sparse.h"
 #include "ruga/ruga.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -122,6 +125,83 @@ static void symmetric_product_equals_dense(void** state) {
     ruga_sparse_clear(&a);
 }
 
+static double signed_size(ruga_random* random, double decades) {
+    double size = pow(10, -decades * ruga_random_uniform(random));
+    return ruga_random_uniform(random) < 0.5 ? -size : size;
+}
+
+static void angles_are_those_of_atan2(void** state) {
+    (void)state;
+    ruga_random random = {5};
+    double y[RUGA_LANES], x[RUGA_LANES], angle[RUGA_LANES];
+    for (int k = 0; k < 3000; k++) {
+        for (int i = 0; i < RUGA_LANES; i++) {
+            y[i] = signed_size(&random, k % 3);
+            x[i] = signed_size(&random, k % 60);
+        }
+        ruga_lanes_angle(RUGA_LANES, y, x, angle);
+        for (int i = 0; i < RUGA_LANES; i++) {
+            double wanted = atan2(y[i], x[i]);
+            assert_near(angle[i], wanted, 6e-16 * fabs(wanted)); // 1.1e-16 of it are atan2's
+        }
+    }
+    const double edge_y[] = {0, 0, 1, -1, 0, 1, 1, -1, 1e-310, HUGE_VAL, 1};
+    const double edge_x[] = {1, -1, 0, 0, 0, 1, -1, -1, 1e-300, HUGE_VAL, HUGE_VAL};
+    enum { EDGES = sizeof edge_x / sizeof edge_x[0] };
+    ruga_lanes_angle(EDGES, edge_y, edge_x, angle);
+    for (int i = 0; i < EDGES; i++) {
+        assert_near(angle[i], atan2(edge_y[i], edge_x[i]),
+                    6e-16 * fabs(atan2(edge_y[i], edge_x[i])) + 1e-300);
+    }
+    ruga_lanes_angle(2, (const double[2]){NAN, 1}, (const double[2]){1, NAN}, angle);
+    assert_true(isnan(angle[0]) && isnan(angle[1]));
+}
+
+static void powers_are_those_of_pow(void** state) {
+    (void)state;
+    ruga_random random = {6};
+    double value[RUGA_LANES], result[RUGA_LANES];
+    for (int k = 0; k < 3000; k++) {
+        double power = 2 * ruga_random_uniform(&random) - 1;
+        for (int i = 0; i < RUGA_LANES; i++) {
+            value[i] = k % 2 ? 0.5 + ruga_random_uniform(&random) : fabs(signed_size(&random, k % 300));
+        }
+        ruga_lanes_power(RUGA_LANES, value, power, result);
+        for (int i = 0; i < RUGA_LANES; i++) {
+            double wanted = pow(value[i], power);
+            assert_near(result[i], wanted, 4e-16 * (1 + fabs(log(wanted))) * wanted);
+        }
+    }
+    ruga_lanes_power(2, (const double[2]){1, 7}, 0, result);
+    assert_true(result[0] == 1 && result[1] == 1);
+    ruga_lanes_power(1, (const double[1]){1}, 0.7, result);
+    assert_true(result[0] == 1);
+}
+
+static void lanes_do_not_know_one_another(void** state) {
+    (void)state;
+    ruga_random random = {7};
+    double y[RUGA_LANES], x[RUGA_LANES], angle[RUGA_LANES], power[RUGA_LANES], one;
+    for (int i = 0; i < RUGA_LANES; i++) {
+        y[i] = signed_size(&random, 3);
+        x[i] = signed_size(&random, 3);
+    }
+    for (int count = 1; count <= RUGA_LANES; count++) {
+        ruga_lanes_angle(count, y, x, angle);
+        for (int i = 0; i < count; i++) {
+            power[i] = fabs(y[i]);
+        }
+        double result[RUGA_LANES];
+        ruga_lanes_power(count, power, -0.4, result);
+        for (int i = 0; i < count; i++) {
+            ruga_lanes_angle(1, y + i, x + i, &one);
+            assert_true(angle[i] == one);
+            ruga_lanes_power(1, power + i, -0.4, &one);
+            assert_true(result[i] == one);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(error_sentence_is_kept_and_prefixed),
@@ -131,6 +211,9 @@ int main(void) {
         cmocka_unit_test(parallel_for_inside_a_chunk_covers_its_range_once),
         cmocka_unit_test(pattern_from_pairs_is_sorted_without_repeats),
         cmocka_unit_test(symmetric_product_equals_dense),
+        cmocka_unit_test(angles_are_those_of_atan2),
+        cmocka_unit_test(powers_are_those_of_pow),
+        cmocka_unit_test(lanes_do_not_know_one_another),
     };
     return cmocka_run_group_tests_name("core", tests, NULL, check_no_leak);
 }

@@ -229,18 +229,19 @@ static void a_skin_that_varies_may_be_creased(void** state) {
 
 // ---- folding -------------------------------------------------------------------------------------------
 
+// So do hinges that are far stiffer than the paper: forces end at the round-off of their angles.
 static void keyframes_fold_to_their_angle(void** state) {
     (void)state;
     const ruga_crease_key keys[2] = {{.time = 0}, {.time = 0.06, .angle = 120 * DEGREE}};
     const ruga_method methods[2] = {RUGA_METHOD_QUASI_NEWTON, RUGA_METHOD_NEWTON};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 4; k++) {
         small_scene s;
-        ruga_crease_def crease = crease_line(across, 0.02);
+        ruga_crease_def crease = crease_line(across, k < 2 ? 0.02 : 1e9);
         double range[2], most = 0;
         crease.key_count = 2;
         crease.keys = keys;
         make_paper(&s, 1, &crease);
-        s.def.solver.method = methods[k];
+        s.def.solver.method = methods[k % 2];
         scene_build(&s);
         for (int frame = 1; frame <= 3; frame++) {
             ruga_report report;
@@ -252,7 +253,8 @@ static void keyframes_fold_to_their_angle(void** state) {
             assert_near(range[1], 40 * frame * DEGREE, 1e-6);
             most = fmax(most, ruga_state_gap(s.state));
         }
-        assert_true(most < 1e-12 * s.model->mean_edge);
+        print_message("gap of %.2g edges\n", most / s.model->mean_edge);
+        assert_true(most < (k < 2 ? 1e-12 : 1e-10) * s.model->mean_edge);
         scene_free(&s);
     }
 }
@@ -306,7 +308,8 @@ static void a_sheet_may_start_folded(void** state) {
         assert_near(range[1], -70 * DEGREE, 1e-12);
         check_laid(&s);
         assert_ok(ruga_state_step(s.model, s.state, &report));
-        assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
+        // A free crease leaves one mode without stiffness, and round-off decides whether it counts as negative.
+        assert_true(report.outcome == RUGA_OUTCOME_MINIMUM || (!stiff && report.residual_shell <= 1e-5));
         angle_range(&s, range);
         assert_near(range[0], (stiff ? -140 : -70) * DEGREE, 1e-6);
         assert_near(range[1], (stiff ? -140 : -70) * DEGREE, 1e-6);
@@ -415,36 +418,44 @@ static void a_held_rim_is_held_on_both_sides_of_a_crease(void** state) {
     scene_free(&s);
 }
 
-// A rigid flap: k L theta = M cos(theta).
-static void a_hinge_balances_the_weight_of_a_flap(void** state) {
-    (void)state;
+// A rigid flap: k L theta = M cos(theta). It turns by 40 degrees in one solve, and a straight step that
+// stretches it by 1e-9 is too long already.
+static void check_flap(ruga_method method, double young) {
     small_scene s;
     ruga_report report;
     double arm = 0.1 - 0.0131, moment = 900 * 0.3e-3 * 9.81 * 0.1 * arm * arm / 2, k = moment / 0.1;
     const ruga_crease_def crease = crease_line(across, k);
     make_paper(&s, 1, &crease);
-    s.def.skin.young = 1e11;
+    s.def.skin.young = young;
+    s.def.solver.method = method;
     s.def.gravity[2] = -9.81;
     hold_box(&s.handle[0], -1, 0.0131);
     s.def.handle_count = 1;
     scene_build(&s);
-    for (int frame = 0; frame < 2; frame++) {
-        assert_ok(ruga_state_step(s.model, s.state, &report));
-    }
+    assert_ok(ruga_state_step(s.model, s.state, &report));
     assert_int_equal(report.outcome, RUGA_OUTCOME_MINIMUM);
     double theta = 0.7, range[2], force[3];
     for (int i = 0; i < 50; i++) {
         theta -= (theta - cos(theta)) / (1 + sin(theta));
     }
     angle_range(&s, range);
-    print_message("flap: %.4f to %.4f degrees, rigid %.4f\n", range[0] / DEGREE, range[1] / DEGREE,
-                  -theta / DEGREE);
+    print_message("flap of %g Pa: %.4f to %.4f degrees, rigid %.4f; %d iterations\n", young,
+                  range[0] / DEGREE, range[1] / DEGREE, -theta / DEGREE, report.newton_iterations);
+    assert_true(report.newton_iterations < (method == RUGA_METHOD_NEWTON ? 60 : 400));
     assert_near(range[0], -theta, 0.2 * DEGREE);
     assert_near(range[1], -theta, 0.2 * DEGREE);
     assert_ok(ruga_state_handle_forces(s.state, force));
     // What is held beyond the crease has weight too, which the handle carries.
     assert_near(force[2], 900 * 0.3e-3 * 0.02 * 9.81, 1e-3 * force[2]);
     scene_free(&s);
+}
+
+static void a_hinge_balances_the_weight_of_a_flap(void** state) {
+    (void)state;
+    const ruga_method methods[2] = {RUGA_METHOD_QUASI_NEWTON, RUGA_METHOD_NEWTON};
+    for (int k = 0; k < 4; k++) {
+        check_flap(methods[k % 2], k < 2 ? 1e11 : 1e13);
+    }
 }
 
 // ---- plasticity ----------------------------------------------------------------------------------------

@@ -14,17 +14,27 @@
 static const double CORNER[9] = {0.1, 0.2, -0.3, 1.2, 0.1, 0.4, 0.3, 1.1, 0.2};
 
 static double stiffness(double power, const double* x, double gradient[3][3]) {
-    return ruga_thickness_stiffness(power, 0.5, (const double* const[3]){x, x + 3, x + 6}, gradient);
+    ruga_triangle_lanes one = {.gradient = {{{0}}}};
+    double area = 0.5, thickness[1][2];
+    ruga_triangle_lanes_set(&one, (const double* const[3]){x, x + 3, x + 6});
+    ruga_thickness_lanes_stiffness(1, power, &area, &one, thickness);
+    ruga_thickness_lanes_add(1, &thickness[0][1], &one);
+    ruga_lanes_store(1, 3, one.gradient, gradient[0]);
+    return thickness[0][0];
 }
 
 // The full 9 x 9 Hessian from its lower blocks.
 static void hessian(double power, const double* x, double matrix[9][9]) {
-    double block[RUGA_TRIANGLE_BLOCKS][9] = {{0}};
-    ruga_thickness_add_hessian(power, 0.5, (const double* const[3]){x, x + 3, x + 6}, 1, block);
+    double block[1][RUGA_TRIANGLE_BLOCKS][9], area = 0.5, thickness[1][2];
+    ruga_triangle_lanes one = {.block = {{{0}}}};
+    ruga_triangle_lanes_set(&one, (const double* const[3]){x, x + 3, x + 6});
+    ruga_thickness_lanes_stiffness(1, power, &area, &one, thickness);
+    ruga_thickness_lanes_add_hessian(1, power, &thickness[0][1], &one);
+    ruga_triangle_lanes_blocks(1, &one, block);
     for (int b = 0; b < RUGA_TRIANGLE_BLOCKS; b++) {
         int row = 3 * ruga_triangle_block_corner[b][0], column = 3 * ruga_triangle_block_corner[b][1];
         for (int k = 0; k < 9; k++) {
-            matrix[row + k / 3][column + k % 3] = matrix[column + k % 3][row + k / 3] = block[b][k];
+            matrix[row + k / 3][column + k % 3] = matrix[column + k % 3][row + k / 3] = block[0][b][k];
         }
     }
 }

@@ -226,7 +226,7 @@ typedef struct ruga_crease_def {
     const char* group;
     ruga_crease_kind kind; // a cut has no hinge
     ruga_crease_freedom freedom;
-    double start;     // s, in dynamic motion: until then it bends like the material beside it; <= 0: always
+    double start;     // s: until then the sheet is not cut along it; <= 0: always there
     char assignment;  // 'M', 'V', 'F', 'U', 'C' as in FOLD; carried along
     double stiffness; // N m/rad per m = N, >= 0
     double rest;      // rad
