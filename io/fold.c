@@ -495,7 +495,9 @@ done:
 
 ruga_status ruga_crease_pattern_mesh(const ruga_crease_pattern* pattern, const char* path, ruga_mesh* mesh) {
     if (pattern->face_count == 0) {
-        return ruga_fail(RUGA_BAD_INPUT, "%s: the crease pattern has no faces", path);
+        return ruga_fail(RUGA_BAD_INPUT, "%s: the %s", path,
+                         pattern->folded ? "folded form has no faces_vertices, and faces are found in flat patterns alone"
+                                         : "crease pattern has no faces");
     }
     return pattern->folded ? mesh_faces(pattern, path, mesh) : mesh_region(pattern, path, mesh);
 }

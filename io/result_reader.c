@@ -641,6 +641,16 @@ ruga_status ruga_result_read_creases(ruga_result_reader* reader, int frame, doub
     return status;
 }
 
+// `cannot` says what does not work.
+static ruga_status read_row(const ruga_result_reader* reader, int set, int frame, const char* cannot, double* data) {
+    RUGA_TRY(check_frame(reader, frame));
+    ruga_hdf5 hdf5;
+    ruga_hdf5_begin(&hdf5, reader->path);
+    ruga_status status = ruga_hdf5_check(&hdf5, get_row(reader, set, frame, data), RUGA_IO, cannot);
+    ruga_hdf5_end(&hdf5);
+    return status;
+}
+
 ruga_status ruga_result_read_segment_gaps(ruga_result_reader* reader, int frame, double* gap) {
     if (reader->set[RUGA_RESULT_SEGMENT_GAP] < 0) {
         double largest;
@@ -650,27 +660,15 @@ ruga_status ruga_result_read_segment_gaps(ruga_result_reader* reader, int frame,
         }
         return RUGA_OK;
     }
-    RUGA_TRY(check_frame(reader, frame));
-    ruga_hdf5 hdf5;
-    ruga_hdf5_begin(&hdf5, reader->path);
-    bool ok = get_row(reader, RUGA_RESULT_SEGMENT_GAP, frame, gap);
-    ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "the gaps of a frame cannot be read");
-    ruga_hdf5_end(&hdf5);
-    return status;
+    return read_row(reader, RUGA_RESULT_SEGMENT_GAP, frame, "the gaps of a frame cannot be read", gap);
 }
 
 ruga_status ruga_result_read_handle_force(ruga_result_reader* reader, int frame, double* force) {
-    RUGA_TRY(check_frame(reader, frame));
     if (reader->set[RUGA_RESULT_HANDLE_FORCE] < 0) {
         memset(force, 0, 3 * (size_t)reader->header.handle_count * sizeof *force);
-        return RUGA_OK;
+        return check_frame(reader, frame);
     }
-    ruga_hdf5 hdf5;
-    ruga_hdf5_begin(&hdf5, reader->path);
-    bool ok = get_row(reader, RUGA_RESULT_HANDLE_FORCE, frame, force);
-    ruga_status status = ruga_hdf5_check(&hdf5, ok, RUGA_IO, "the forces of handles cannot be read");
-    ruga_hdf5_end(&hdf5);
-    return status;
+    return read_row(reader, RUGA_RESULT_HANDLE_FORCE, frame, "the forces of handles cannot be read", force);
 }
 
 ruga_status ruga_result_read_lattice(ruga_result_reader* reader, int frame, int* node_count,

@@ -278,6 +278,12 @@ static ruga_status check_crease(const ruga_yaml_node* node, const char* shown,
     if (ruga_yaml_find(hinge, "stiffness") && ruga_yaml_find(hinge, "length")) {
         return ruga_yaml_fail(hinge, path, "stiffness and length are both given; keep one of them");
     }
+    for (int k = 0; k < 2 && !ruga_yaml_find(hinge, "yield"); k++) {
+        const char* name = k ? "hardening" : "rate";
+        if (ruga_yaml_find(hinge, name)) {
+            return ruga_yaml_fail(ruga_yaml_find(hinge, name), path, "%s says nothing without yield", name);
+        }
+    }
     if (crease->rest.word && which > 1 && which != 6) {
         return ruga_yaml_fail(ruga_yaml_find(hinge, "rest"), path,
                               "assigned angles belong to fold, svg and stress");

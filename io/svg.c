@@ -42,8 +42,9 @@ typedef struct reader {
     char* sheet; // text of <style>
     int sheet_length, sheet_capacity;
     bool in_sheet;
-    int without_stroke, white, unknown;
-    char first_unknown[32];
+    int without_stroke, white, unknown, foreign;
+    char first_unknown[32], first_foreign[32];
+    int first_vertex; // of the shape at hand, whose lines share their ends
     ruga_assignment assignment; // of the shape at hand
     double angle;
 } reader;
@@ -284,6 +285,23 @@ static ruga_status read_style(const reader* r, const style* outer, style* s) {
 
 // ------------------------------------------------------------------------------- shapes
 
+// The vertex of a shape at a place: its first or its last one, or a new one.
+static ruga_status add_end(reader* r, const double place[2], int* vertex) {
+    ruga_crease_pattern* p = r->pattern;
+    // y points down in a drawing, up in a pattern: seen from the front, nothing is mirrored.
+    const double x[3] = {r->scale * place[0], -r->scale * place[1], 0};
+    const int old[2] = {p->vertex_count - 1, r->first_vertex};
+    for (int k = 0; k < 2; k++) {
+        *vertex = old[k];
+        if (*vertex >= r->first_vertex && *vertex < p->vertex_count &&
+            memcmp(p->position[*vertex], x, sizeof x) == 0) {
+            return RUGA_OK;
+        }
+    }
+    *vertex = p->vertex_count;
+    return ruga_crease_pattern_add_vertex(p, x);
+}
+
 static ruga_status take_line(const double from[2], const double to[2], void* context) {
     reader* r = context;
     const double* const end[2] = {from, to};
@@ -299,13 +317,10 @@ static ruga_status take_line(const double from[2], const double to[2], void* con
     if (!r->pattern || (from[0] == to[0] && from[1] == to[1])) {
         return RUGA_OK;
     }
-    int v = r->pattern->vertex_count;
-    for (int k = 0; k < 2; k++) {
-        // y points down in a drawing, up in a pattern: seen from the front, nothing is mirrored.
-        const double x[3] = {r->scale * end[k][0], -r->scale * end[k][1], 0};
-        RUGA_TRY(ruga_crease_pattern_add_vertex(r->pattern, x));
-    }
-    return ruga_crease_pattern_add_edge(r->pattern, v, v + 1, r->assignment, r->angle);
+    int v[2];
+    RUGA_TRY(add_end(r, from, &v[0]));
+    RUGA_TRY(add_end(r, to, &v[1]));
+    return ruga_crease_pattern_add_edge(r->pattern, v[0], v[1], r->assignment, r->angle);
 }
 
 // Attributes that are lengths, 0 where missing: names [count], value [count].
@@ -361,6 +376,17 @@ static ruga_status draw_path(const reader* r, const ruga_svg_pen* pen) {
     return RUGA_OK;
 }
 
+// Of the radii of its corners one that is missing is like the other.
+static ruga_status draw_rectangle(const reader* r, const ruga_svg_pen* pen) {
+    static const char* const names[] = {"x", "y", "width", "height", "rx", "ry"};
+    double v[6];
+    RUGA_TRY(read_lengths(r, 6, names, v));
+    for (int i = 4; i < 6; i++) {
+        v[i] = ruga_xml_attribute(r->tag, names[i]).at ? v[i] : v[9 - i];
+    }
+    return ruga_svg_draw_rectangle(pen, v, v + 2, v + 4);
+}
+
 static ruga_status draw_shape(reader* r, const ruga_svg_pen* pen) {
     ruga_slice name = r->tag->name;
     if (ruga_slice_is(name, "path")) {
@@ -377,11 +403,7 @@ static ruga_status draw_shape(reader* r, const ruga_svg_pen* pen) {
         return ruga_svg_draw_points(pen, 2, p, false);
     }
     if (ruga_slice_is(name, "rect")) {
-        static const char* const box[] = {"x", "y", "width", "height"};
-        RUGA_TRY(read_lengths(r, 4, box, v));
-        const double right = v[0] + v[2], low = v[1] + v[3];
-        const double p[4][2] = {{v[0], v[1]}, {right, v[1]}, {right, low}, {v[0], low}};
-        return ruga_svg_draw_points(pen, 4, p, true);
+        return draw_rectangle(r, pen);
     }
     static const char* const round[2][4] = {{"cx", "cy", "rx", "ry"}, {"cx", "cy", "r", "r"}};
     RUGA_TRY(read_lengths(r, 4, round[ruga_slice_is(name, "circle")], v));
@@ -412,6 +434,7 @@ static ruga_status read_shape(reader* r, const style* s) {
     }
     double part = s->opacity * s->stroke_opacity;
     bool folds = r->assignment == RUGA_ASSIGNMENT_MOUNTAIN || r->assignment == RUGA_ASSIGNMENT_VALLEY;
+    r->first_vertex = r->pattern ? r->pattern->vertex_count : 0;
     r->angle = folds && part < 1 ? (r->assignment == RUGA_ASSIGNMENT_VALLEY ? part : -part) * RUGA_PI : NAN;
     const ruga_svg_pen pen = {s->transform, r->tolerance, take_line, r};
     return draw_shape(r, &pen);
@@ -420,6 +443,7 @@ static ruga_status read_shape(reader* r, const style* s) {
 static ruga_status open_tag(const ruga_xml_tag* tag, void* context) {
     static const char* const shapes[] = {"path", "polyline", "polygon", "line",
                                          "rect", "circle",   "ellipse", NULL};
+    static const char* const foreign[] = {"use", "text", "image", "foreignObject", NULL};
     static const char* const unseen[] = {"defs", "symbol", "clipPath", "mask", "pattern", "marker", NULL};
     reader* r = context;
     style s;
@@ -429,6 +453,10 @@ static ruga_status open_tag(const ruga_xml_tag* tag, void* context) {
     r->in_sheet = ruga_slice_is(tag->name, "style") && !r->pattern; // the second pass has it already
     if (is_one_of(tag->name, shapes)) {
         RUGA_TRY(read_shape(r, &s));
+    }
+    if (is_one_of(tag->name, foreign) && !s.hidden && r->foreign++ == 0) {
+        (void)snprintf(r->first_foreign, sizeof r->first_foreign, "%.*s in line %d", (int)tag->name.length,
+                       tag->name.at, tag->line);
     }
     if (r->depth + 1 == MOST_DEPTH) {
         return fail(r, "elements are nested too deeply");
@@ -456,7 +484,7 @@ static ruga_status take_text(ruga_slice text, void* context) {
 
 static ruga_status read_drawing(reader* r, const ruga_text* text) {
     const ruga_xml_events events = {open_tag, close_tag, take_text, r};
-    r->depth = r->without_stroke = r->white = r->unknown = 0;
+    r->depth = r->without_stroke = r->white = r->unknown = r->foreign = 0;
     r->stack[0] = (style){.transform = {{1, 0, 0, 1, 0, 0}}, .stroke = -1, .opacity = 1, .stroke_opacity = 1};
     for (int i = 0; i < 2; i++) {
         r->low[i] = INFINITY;
@@ -489,6 +517,11 @@ static ruga_status read_pattern(reader* r, const ruga_text* text, double toleran
     }
     if (r->white > 0) {
         RUGA_TRY(ruga_crease_pattern_note(pattern, "%d white shapes were left out", r->white));
+    }
+    if (r->foreign > 0) {
+        RUGA_TRY(ruga_crease_pattern_note(
+            pattern, "%d elements that are not shapes were left out, the first a %s: draw them as paths", r->foreign,
+            r->first_foreign));
     }
     ruga_status status = ruga_crease_pattern_arrange(pattern, WELD * size * r->scale);
     return status == RUGA_OK ? status : ruga_fail_prefix(status, "%s", text->path);

@@ -217,6 +217,29 @@ ruga_status ruga_svg_draw_points(const ruga_svg_pen* pen, int count, const doubl
     return closed && count > 2 ? line_to(&d, point[0]) : RUGA_OK;
 }
 
+ruga_status ruga_svg_draw_rectangle(const ruga_svg_pen* pen, const double corner[2], const double size[2],
+                                    const double radius[2]) {
+    static const int turn[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    double r[2];
+    for (int i = 0; i < 2; i++) {
+        r[i] = fmin(fmax(radius[i], 0), 0.5 * size[i]);
+    }
+    r[0] = r[1] > 0 ? r[0] : 0;
+    r[1] = r[0] > 0 ? r[1] : 0;
+    drawer d = {.pen = pen, .at = {corner[0], corner[1] + r[1]}};
+    for (int k = 0; k < 4; k++) {
+        double in[2], out[2]; // a corner is reached along X where k is odd, and left along Y
+        for (int i = 0; i < 2; i++) {
+            double place = corner[i] + turn[k][i] * size[i], inwards = turn[k][i] ? -r[i] : r[i];
+            in[i] = place + (i == k % 2 ? 0 : inwards);
+            out[i] = place + (i == k % 2 ? inwards : 0);
+        }
+        RUGA_TRY(k > 0 ? line_to(&d, in) : RUGA_OK);
+        RUGA_TRY(r[0] > 0 ? arc_to(&d, (const double[7]){r[0], r[1], 0, 0, 1, out[0], out[1]}) : RUGA_OK);
+    }
+    return line_to(&d, (const double[2]){corner[0], corner[1] + r[1]});
+}
+
 ruga_status ruga_svg_draw_ellipse(const ruga_svg_pen* pen, const double center[2], const double radius[2]) {
     drawer d = {.pen = pen, .at = {center[0] + radius[0], center[1]}};
     RUGA_TRY(arc_to(&d, (const double[7]){radius[0], radius[1], 0, 0, 1, center[0] - radius[0], center[1]}));

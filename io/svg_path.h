@@ -34,6 +34,9 @@ bool ruga_svg_number(const char** at, const char* end, double* value);
 ruga_status ruga_svg_draw_path(const ruga_svg_pen* pen, ruga_slice data, const char** bad);
 // Straight pieces through points [count][2], and back to the first where closed.
 ruga_status ruga_svg_draw_points(const ruga_svg_pen* pen, int count, const double (*point)[2], bool closed);
+// Its corners are quarters of ellipses with these radii, at most half of a side.
+ruga_status ruga_svg_draw_rectangle(const ruga_svg_pen* pen, const double corner[2], const double size[2],
+                                    const double radius[2]);
 ruga_status ruga_svg_draw_ellipse(const ruga_svg_pen* pen, const double center[2], const double radius[2]);
 
 #endif

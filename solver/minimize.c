@@ -47,6 +47,9 @@ static ruga_status convex_to_round_off(ruga_skin* skin, bool* convex) {
 ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double tolerance, double* target,
                               double* gradient, ruga_skin_result* result, bool* done) {
     *done = true;
+    // Each iteration lets gaps grow by the round-off of the positions, and there may be thousands. The factor that
+    // is kept is that of what is left.
+    RUGA_TRY(ruga_skin_restore(skin, x));
     if (!certify) {
         result->outcome = RUGA_OUTCOME_MINIMUM;
         return RUGA_OK;
@@ -63,6 +66,7 @@ ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double t
         result->outcome = RUGA_OUTCOME_MINIMUM;
         return RUGA_OK;
     }
+    RUGA_TRY(ruga_skin_energy(skin, x, &result->terms, gradient));
     RUGA_TRY(ruga_negative_curvature_step(skin, x, &result->terms, gradient, &moved));
     if (!moved && *target <= 2e-3 * tolerance) {
         result->outcome = RUGA_OUTCOME_SADDLE;
@@ -92,5 +96,5 @@ ruga_status ruga_skin_minimize(ruga_skin* skin, double* x, double tolerance, boo
         RUGA_TRY(ruga_quasi_newton_minimize(skin, x, tolerance, certify, result));
         break;
     }
-    return skin->near_dependent ? ruga_skin_restore(skin, x) : RUGA_OK;
+    return result->outcome == RUGA_OUTCOME_MINIMUM ? RUGA_OK : ruga_skin_restore(skin, x);
 }

@@ -524,6 +524,25 @@ static void a_crease_yields(void** state) {
 
 // ---- restart, memory, refusals -------------------------------------------------------------------------
 
+// Round-off of the positions is what is left of a gap, however many iterations a solve takes.
+static void iterations_leave_no_gap(void** state) {
+    (void)state;
+    small_scene s;
+    ruga_report report;
+    const ruga_crease_key keys[2] = {{.time = 0}, {.time = 0.02, .angle = 100 * DEGREE}};
+    ruga_crease_def creases[2] = {crease_line(across, 0.02), crease_line(along, 0.02)};
+    for (int c = 0; c < 2; c++) {
+        creases[c].key_count = 2;
+        creases[c].keys = keys;
+    }
+    make_paper(&s, 2, creases);
+    scene_build(&s);
+    assert_ok(ruga_state_step(s.model, s.state, &report));
+    assert_true(report.newton_iterations > 100);
+    assert_true(ruga_state_gap(s.state) < 2 * 0x1p-52 * s.model->extent);
+    scene_free(&s);
+}
+
 static void a_restarted_state_goes_on_with_the_same_bits(void** state) {
     (void)state;
     small_scene s;
@@ -757,6 +776,7 @@ int main(void) {
         cmocka_unit_test(a_held_rim_is_held_on_both_sides_of_a_crease),
         cmocka_unit_test(a_hinge_balances_the_weight_of_a_flap),
         cmocka_unit_test(a_crease_yields),
+        cmocka_unit_test(iterations_leave_no_gap),
         cmocka_unit_test(a_restarted_state_goes_on_with_the_same_bits),
         cmocka_unit_test(each_allocation_may_fail),
         cmocka_unit_test(what_creases_cannot_do_is_refused),

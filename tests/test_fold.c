@@ -417,8 +417,10 @@ static void all_path_commands_and_transforms_are_drawn(void** state) {
     const char* const circle[] = {
         "<path stroke='blue' d='M-10 0A10 10 0 0 1 10 0A10 10 0 0 1-10 0z'/>",
         "<path stroke='blue' d='M10 0a10 10 0 01-10 10a10 10 0 1110-10'/>", "<circle stroke='blue' r='10'/>",
-        "<ellipse transform='scale(2 1)' stroke='blue' cx='0' cy='0' rx='5' ry='10'/>"};
-    for (int k = 0; k < 4; k++) {
+        "<ellipse transform='scale(2 1)' stroke='blue' cx='0' cy='0' rx='5' ry='10'/>",
+        "<rect stroke='blue' x='-10' y='-10' width='20' height='20' rx='10'/>",
+        "<rect transform='scale(1 2)' stroke='blue' x='-10' y='-5' width='20' height='10' rx='30' ry='5'/>"};
+    for (int k = 0; k < 6; k++) {
         char text[512];
         (void)snprintf(text, sizeof text,
                        "<svg><rect x='-50' y='-50' width='100' height='100' stroke='black'/>%s</svg>",
@@ -453,6 +455,28 @@ static void all_path_commands_and_transforms_are_drawn(void** state) {
         ruga_curves_clear(&curves);
         ruga_crease_pattern_clear(&p);
     }
+}
+
+static void corners_of_rectangles_are_round(void** state) {
+    (void)state;
+    ruga_crease_pattern p;
+    draw_text("<svg><rect x='-20' y='-20' width='40' height='40' stroke='black'/>"
+              "<rect x='-10' y='-8' width='20' height='16' rx='4' ry='2' stroke='blue'/></svg>",
+              &p);
+    assert_int_equal(p.note_count, 1); // nothing but that the curve is joined to no border
+    // Sides 12 and 12, and an ellipse with semi-axes 4 and 2.
+    assert_near(length_of(&p, RUGA_ASSIGNMENT_VALLEY), 48 + 9.688448220547675 * 2, 0.03);
+    ruga_crease_pattern_clear(&p);
+}
+
+static void what_is_no_shape_is_named(void** state) {
+    (void)state;
+    ruga_crease_pattern p;
+    draw_text("<svg>" SHEET "<line stroke='red' x1='5' x2='5' y2='10'/>\n<use href='#a'/><defs><text/></defs>"
+              "<g display='none'><image/></g></svg>",
+              &p);
+    assert_true(has_note(&p, "1 elements that are not shapes were left out, the first a use in line 2"));
+    ruga_crease_pattern_clear(&p);
 }
 
 static void refuse_drawing(const char* text, const char* sentence) {
@@ -749,6 +773,8 @@ int main(void) {
         cmocka_unit_test(creases_are_chained_where_nothing_else_meets_them),
         cmocka_unit_test(strokes_say_what_lines_are),
         cmocka_unit_test(all_path_commands_and_transforms_are_drawn),
+        cmocka_unit_test(corners_of_rectangles_are_round),
+        cmocka_unit_test(what_is_no_shape_is_named),
         cmocka_unit_test(broken_drawings_are_refused_with_the_line),
         cmocka_unit_test(entities_are_put_in_but_cannot_blow_up),
         cmocka_unit_test(real_patterns_are_read_as_others_read_them),
