@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { PAIRS = 8, REFRESH = 24, SLOW = 240, MOST_IN_VAIN = 6, MAX_ITERATIONS = 3000 };
+enum { PAIRS = 8, REFRESH = 24, SLOW = 240, MOST_IN_VAIN = 12, MAX_ITERATIONS = 3000 };
 enum { GRADIENT, PROJECTED, DIRECTION, OLD_PROJECTED, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
 
 typedef struct memory {
