@@ -103,9 +103,6 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
     for (int k = 0; k < MAX_ITERATIONS; k++, skin->work.iterations++) {
         RUGA_TRY(ruga_skin_project(skin, gradient, projected));
         result->residual = ruga_skin_residual(skin, projected, &result->terms);
-        if (m.step > 0) {
-            remember(skin, &m, x, projected);
-        }
         if (result->residual <= target) {
             bool done;
             RUGA_TRY(ruga_skin_certify(skin, x, certify, tolerance, &target, gradient, result, &done));
@@ -128,6 +125,9 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
             m = (memory){.newest = -1};
             score = 0;
             continue;
+        }
+        if (m.step > 0) {
+            remember(skin, &m, x, projected);
         }
         RUGA_TRY(iterate(skin, &m, x, gradient, projected, &result->terms, &move));
         // A first step that is far too long or hardly taken: the old factor is of no use here.
