@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
+#ifdef __linux__
+#define _GNU_SOURCE // madvise
+#endif
 #include "core/memory.h"
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
 
 #include <limits.h>
 #include <stdatomic.h>
@@ -10,9 +17,19 @@
 // Before each block: its size, in one cache line, so that blocks stay 64-byte aligned.
 enum { HEADER = 64 };
 
+// What is passed over again and again, as a factor is, waits for the tables of small pages more than for memory. So
+// blocks of some large pages ask for them, but for their end: no page is filled for a part of it.
 static void* allocate_default(size_t size, void* context) {
+    enum { LARGE_PAGE = 1 << 21 };
     (void)context;
-    return aligned_alloc(HEADER, (size + HEADER - 1) / HEADER * HEADER);
+    size_t whole = (size + HEADER - 1) / HEADER * HEADER;
+    void* block = aligned_alloc(size < 2 * (size_t)LARGE_PAGE ? HEADER : LARGE_PAGE, whole);
+#ifdef MADV_HUGEPAGE
+    if (block && size >= 2 * (size_t)LARGE_PAGE) {
+        (void)madvise(block, size / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE); // it may be refused
+    }
+#endif
+    return block;
 }
 
 static void free_default(void* memory, size_t size, void* context) {

@@ -25,7 +25,7 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
         return;
     }
     for (int t = 0; f->memory && t <= f->symbolic.task_count; t++) {
-        ruga_release(f->memory[t].factor);
+        ruga_release(f->memory[t].apart ? f->memory[t].factor : NULL);
         ruga_release(f->memory[t].index);
         ruga_release(f->memory[t].upward);
     }
@@ -33,6 +33,7 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
         ruga_release(f->stack[i].memory);
     }
     ruga_release(f->stack);
+    ruga_release(f->factor);
     ruga_release(f->memory);
     ruga_ldl_symbolic_clear(&f->symbolic);
     ruga_release(f->matrix.value);
@@ -41,6 +42,7 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
     ruga_release(f->child);
     ruga_release(f->sibling);
     ruga_release(f->front);
+    ruga_release(f->run);
     ruga_release(f->load);
     ruga_release(f->answer);
     ruga_release(f->defect);
@@ -137,6 +139,10 @@ done:
     return status;
 }
 
+static size_t entry_size(const ruga_ldl* f) {
+    return f->single ? sizeof(float) : sizeof(double);
+}
+
 size_t ruga_ldl_bytes(const ruga_ldl* f) {
     size_t n = (size_t)f->symbolic.n, entries = (size_t)f->matrix.start[n];
     size_t bytes = ruga_ldl_symbolic_bytes(&f->symbolic);
@@ -146,13 +152,13 @@ size_t ruga_ldl_bytes(const ruga_ldl* f) {
     bytes += ((size_t)f->gather_capacity + tasks * top) * sizeof(double) + (n + top) * sizeof(int);
     for (int t = 0; t <= f->symbolic.task_count; t++) {
         const task_memory* m = &f->memory[t];
-        bytes += m->factor_capacity * (f->single ? sizeof(float) : sizeof(double)) + m->upward_capacity +
+        bytes += (m->apart ? m->factor_capacity * entry_size(f) : 0) + m->upward_capacity +
                  m->index_capacity * sizeof(int);
     }
     for (int i = 0; i < f->stack_count; i++) {
         bytes += f->stack[i].capacity;
     }
-    return bytes;
+    return bytes + f->run_capacity * sizeof *f->run + f->factor_bytes;
 }
 
 // max[i] = max_j |a_ij| scale_i scale_j
@@ -223,6 +229,49 @@ ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, si
     return RUGA_OK;
 }
 
+ruga_status ruga_ldl_make_factor_room(const ruga_ldl* f, task_memory* m, size_t count) {
+    if (count <= m->factor_capacity) {
+        return RUGA_OK;
+    }
+    void* grown = m->apart ? m->factor : NULL;
+    RUGA_TRY(ruga_ldl_make_room(&grown, &m->factor_capacity, count, entry_size(f)));
+    if (!m->apart) {
+        memcpy(grown, m->factor, m->factor_used * entry_size(f));
+    }
+    m->factor = grown;
+    m->apart = true;
+    return RUGA_OK;
+}
+
+// All tasks' L in one piece again where one outgrew its part. What was in it is gone.
+static ruga_status join_factors(ruga_ldl* f) {
+    bool joined = f->factor != NULL;
+    size_t total = 0, pad = RUGA_LDL_TILE * RUGA_LDL_TILE;
+    for (int t = 0; t <= f->symbolic.task_count; t++) {
+        task_memory* m = &f->memory[t];
+        joined = joined && !m->apart;
+        m->factor_capacity = (m->factor_capacity + pad - 1) / pad * pad;
+        total += m->factor_capacity * entry_size(f);
+    }
+    if (joined) {
+        return RUGA_OK;
+    }
+    for (int t = 0; t <= f->symbolic.task_count; t++) {
+        ruga_release(f->memory[t].apart ? f->memory[t].factor : NULL);
+        f->memory[t].apart = false;
+    }
+    ruga_release(f->factor);
+    f->factor = NULL;
+    f->factor_bytes = 0;
+    RUGA_TRY(ruga_ldl_make_room(&f->factor, &f->factor_bytes, total, 1));
+    char* next = f->factor;
+    for (int t = 0; t <= f->symbolic.task_count; t++) {
+        f->memory[t].factor = next;
+        next += f->memory[t].factor_capacity * entry_size(f);
+    }
+    return RUGA_OK;
+}
+
 size_t ruga_ldl_below_children(const ruga_ldl* f, int s) {
     const front_record* r = &f->front[s];
     size_t base = f->memory[r->task].stack_used[!r->far];
@@ -272,7 +321,7 @@ static ruga_status factor_top(ruga_ldl* f) {
 }
 
 // What each task needs where no pivot is delayed: then nothing is allocated after the first factorisation,
-// and in the first one nothing is moved.
+// and in the first one nothing is moved. Otherwise the second joins what was moved.
 static ruga_status plan_tasks(ruga_ldl* f) {
     const ruga_ldl_symbolic* s = &f->symbolic;
     for (int k = 0; k < s->count; k++) {
@@ -292,8 +341,7 @@ static ruga_status plan_tasks(ruga_ldl* f) {
     }
     for (int t = 0; t <= s->task_count; t++) {
         task_memory* m = &f->memory[t];
-        RUGA_TRY(ruga_ldl_make_room(&m->factor, &m->factor_capacity, m->factor_used,
-                                    f->single ? sizeof(float) : sizeof(double)));
+        m->factor_capacity = m->factor_used;
         RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used, sizeof(int)));
         RUGA_TRY(ruga_ldl_make_room(&m->upward, &m->upward_capacity, m->upward_used * sizeof(double), 1));
     }
@@ -328,6 +376,43 @@ static void start_tasks(ruga_ldl* f) {
     }
 }
 
+// The rows [begin, end) of a front; where `to` is NULL they are only counted.
+static int list_runs(const ruga_ldl* f, const int* index, int begin, int end, row_run* to) {
+    int count = 0;
+    for (int i = begin; i < end; i++) {
+        int step = index[i], top = f->top_place[step];
+        if (i > begin && step == index[i - 1] + 1 && (top >= 0) == (f->top_place[step - 1] >= 0)) {
+            if (to) {
+                to[count - 1].count++;
+            }
+            continue;
+        }
+        if (to) {
+            to[count] = (row_run){step, 1, top};
+        }
+        count++;
+    }
+    return count;
+}
+
+static ruga_status set_runs(ruga_ldl* f) {
+    size_t used = 0;
+    for (int fill = 0; fill < 2; fill++) {
+        used = 0;
+        for (int k = 0; k < f->symbolic.count; k++) {
+            front_record* r = &f->front[k];
+            const int* index = f->memory[r->task].index + r->index;
+            row_run* to = fill ? f->run + used : NULL;
+            r->run = used;
+            r->own_runs = list_runs(f, index, 0, r->eliminated, to);
+            r->runs = r->own_runs + list_runs(f, index, r->eliminated, r->rows, to ? to + r->own_runs : NULL);
+            used += (size_t)r->runs;
+        }
+        RUGA_TRY(ruga_ldl_make_room((void**)&f->run, &f->run_capacity, used, sizeof *f->run));
+    }
+    return RUGA_OK;
+}
+
 static ruga_status finish(ruga_ldl* f, ruga_factor_info* info) {
     *info = (ruga_factor_info){0};
     for (int t = 0; t <= f->symbolic.task_count; t++) {
@@ -345,6 +430,7 @@ static ruga_status finish(ruga_ldl* f, ruga_factor_info* info) {
         f->widest = rows > f->widest ? rows : f->widest;
     }
     RUGA_TRY(RUGA_RESERVE(f->gather, f->gather_capacity, (f->symbolic.task_count + 1) * f->widest));
+    RUGA_TRY(set_runs(f));
     f->ready = true;
     return RUGA_OK;
 }
@@ -359,6 +445,7 @@ ruga_status ruga_ldl_numeric(ruga_ldl* f, const double* values, bool in_single, 
         RUGA_TRY(plan_tasks(f));
         f->planned = true;
     }
+    RUGA_TRY(join_factors(f));
     RUGA_TRY(reserve_stacks(f));
     start_tasks(f);
     ruga_parallel_for(f->symbolic.task_count, 1, factor_tasks, f);

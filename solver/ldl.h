@@ -69,7 +69,8 @@ typedef struct front_stack {
 
 // Storage of a task. Places in it are kept as offsets, since it moves when delayed pivots make it grow.
 typedef struct task_memory {
-    void* factor; // double or float, per front: ruga_ldl_stored_size
+    void* factor; // double or float, per front: ruga_ldl_stored_size; a part of ruga_ldl's, or apart
+    bool apart;
     size_t factor_used, factor_capacity;
     int* index; // per front: steps of its rows, pivots first
     size_t index_used, index_capacity;
@@ -81,9 +82,16 @@ typedef struct task_memory {
     ruga_status status;
 } task_memory;
 
+// Consecutive steps in the rows of a front: from `step` on, and from `top` on among the steps of the top
+// fronts, -1 = those of other fronts.
+typedef struct row_run {
+    int step, count, top;
+} row_run;
+
 typedef struct front_record {
     size_t factor, index, update; // offsets in its task's memory; `update` from its end of the stack
-    int task, rows, full, eliminated;
+    size_t run;                   // first of its runs, of which own_runs are those of its pivots
+    int task, rows, full, eliminated, runs, own_runs;
     bool far, upward; // handed on by the far stack; by `upward`
 } front_record;
 
@@ -99,7 +107,11 @@ typedef struct ruga_ldl {
     int* child;          // [count] first child of a supernode, -1 = none
     int* sibling;        // [count]
     front_record* front; // [count]
+    row_run* run;        // of all fronts
+    size_t run_capacity;
     task_memory* memory; // [task_count + 1], the last one for the top
+    void* factor;        // of all tasks, one after another, so that it stands in large pages
+    size_t factor_bytes;
     front_stack* stack;  // [stack_count]
     int stack_count, stack_capacity;
     bool single; // L is stored in single precision
@@ -123,6 +135,8 @@ void ruga_ldl_destroy(ruga_ldl** ldl);
 size_t ruga_ldl_below_children(const ruga_ldl* ldl, int s);
 // Room for `count` elements of `size` bytes; what grows, grows by 3 % at least.
 ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, size_t size);
+// The same for L of a task.
+ruga_status ruga_ldl_make_factor_room(const ruga_ldl* ldl, task_memory* m, size_t count);
 // `in_single`: the work is done in single precision, where L is stored so.
 ruga_status ruga_ldl_numeric(ruga_ldl* ldl, const double* values, bool in_single, ruga_factor_info* info);
 ruga_status ruga_ldl_prove_inertia(ruga_ldl* ldl, bool* proven);

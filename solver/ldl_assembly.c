@@ -267,8 +267,7 @@ static ruga_status store_factor(assembly* a) {
     task_memory* m = a->memory;
     const ruga_front* f = &a->front;
     size_t size = ruga_ldl_stored_size(f->rows, f->eliminated), begin = m->factor_used;
-    RUGA_TRY(ruga_ldl_make_room(&m->factor, &m->factor_capacity, begin + size,
-                                ldl->single ? sizeof(float) : sizeof(double)));
+    RUGA_TRY(ruga_ldl_make_factor_room(ldl, m, begin + size));
     if (ldl->single) {
         store_float(f->a, f->rows, f->eliminated, (float*)m->factor + begin);
     } else {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Ruga authors
 //
 // Solves with the multifrontal factor: L y = b front by front, children first, then L^T x = D^-1 y, parents
-// first. Each pass reads the factor once, in strips of eight columns, and that reading is nearly all the time
+// first. Each pass reads the factor once, in strips of four columns, and that reading is nearly all the time
 // it takes. Tasks (ldl.h) run side by side: in the forward pass each adds what it hands up to the steps of
 // the top fronts into a vector of its own, and these are added in the order of the tasks; the large panels at
 // the top are shared out by rows (forward) or by columns (backward). Sums are in the same order for any
@@ -20,38 +20,57 @@
 #include <cblas.h>
 #include <math.h>
 
-enum { TILE = RUGA_LDL_TILE, ROW_CHUNK = 64, STRIP_CHUNK = 4, LARGE = 1 << 17 };
+enum { TILE = RUGA_LDL_TILE, LARGE = 1 << 17 };
+
+// Four numbers wherever a double may stand.
+typedef double lane4 __attribute__((vector_size(32), aligned(8), may_alias));
 
 // One strip of 4 columns, in doubles or floats, and `tiles` of its tiles below the diagonal: y are their
 // rows, p the strip's. forward: y -= L p. backward: p -= L^T y, the sum by lanes, from the last tile up, so
 // that each pass of a solve is one stream of memory.
-#define DEFINE_KERNELS(real, forward, backward)                                                              \
+#define DEFINE_KERNELS(real, column_of, forward, backward)                                                   \
+    RUGA_WIDE_PART void column_of(const real* l, lane4* column) {                                            \
+        for (int r = 0; r < TILE; r++) {                                                                     \
+            (*column)[r] = (double)l[r];                                                                     \
+        }                                                                                                    \
+    }                                                                                                        \
     RUGA_WIDE static void forward(const real* restrict l, int tiles, const double* restrict p,               \
                                   double* restrict y) {                                                      \
-        const double p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3];                                             \
+        const lane4 p0 = {p[0], p[0], p[0], p[0]}, p1 = {p[1], p[1], p[1], p[1]};                            \
+        const lane4 p2 = {p[2], p[2], p[2], p[2]}, p3 = {p[3], p[3], p[3], p[3]};                            \
         for (int t = 0; t < tiles; t++, l += TILE * TILE, y += TILE) {                                       \
-            for (int r = 0; r < TILE; r++) {                                                                 \
-                y[r] -= (l[r] * p0 + l[TILE + r] * p1) + (l[2 * TILE + r] * p2 + l[3 * TILE + r] * p3);      \
-            }                                                                                                \
+            lane4 c0, c1, c2, c3, *row = (lane4*)y;                                                          \
+            column_of(l, &c0);                                                                               \
+            column_of(l + TILE, &c1);                                                                        \
+            column_of(l + 2 * TILE, &c2);                                                                    \
+            column_of(l + 3 * TILE, &c3);                                                                    \
+            *row -= (c0 * p0 + c1 * p1) + (c2 * p2 + c3 * p3);                                               \
         }                                                                                                    \
     }                                                                                                        \
     RUGA_WIDE static void backward(const real* restrict l, int tiles, const double* restrict y,              \
                                    double* restrict p) {                                                     \
-        double sum[TILE][TILE] = {{0}};                                                                      \
+        lane4 s0 = {0}, s1 = {0}, s2 = {0}, s3 = {0};                                                        \
         for (int t = tiles - 1; t >= 0; t--) {                                                               \
-            for (int k = 0; k < TILE; k++) {                                                                 \
-                for (int r = 0; r < TILE; r++) {                                                             \
-                    sum[k][r] += l[TILE * (TILE * t + k) + r] * y[TILE * t + r];                             \
-                }                                                                                            \
-            }                                                                                                \
+            const real* tile = l + TILE * TILE * (ptrdiff_t)t;                                               \
+            const lane4 row = *(const lane4*)(y + TILE * (ptrdiff_t)t);                                      \
+            lane4 c0, c1, c2, c3;                                                                            \
+            column_of(tile, &c0);                                                                            \
+            column_of(tile + TILE, &c1);                                                                     \
+            column_of(tile + 2 * TILE, &c2);                                                                 \
+            column_of(tile + 3 * TILE, &c3);                                                                 \
+            s0 += c0 * row;                                                                                  \
+            s1 += c1 * row;                                                                                  \
+            s2 += c2 * row;                                                                                  \
+            s3 += c3 * row;                                                                                  \
         }                                                                                                    \
-        for (int k = 0; k < TILE; k++) {                                                                     \
-            p[k] -= (sum[k][0] + sum[k][1]) + (sum[k][2] + sum[k][3]);                                       \
-        }                                                                                                    \
+        p[0] -= (s0[0] + s0[1]) + (s0[2] + s0[3]);                                                           \
+        p[1] -= (s1[0] + s1[1]) + (s1[2] + s1[3]);                                                           \
+        p[2] -= (s2[0] + s2[1]) + (s2[2] + s2[3]);                                                           \
+        p[3] -= (s3[0] + s3[1]) + (s3[2] + s3[3]);                                                           \
     }
 
-DEFINE_KERNELS(double, forward_double, backward_double)
-DEFINE_KERNELS(float, forward_float, backward_float)
+DEFINE_KERNELS(double, column_of_doubles, forward_double, backward_double)
+DEFINE_KERNELS(float, column_of_floats, forward_float, backward_float)
 
 typedef struct pass {
     ruga_ldl* ldl;
@@ -108,15 +127,28 @@ static void forward(const panel* l, int to, double* y) {
     }
 }
 
+static void backward_triangle(const panel* l, int s, double* y) {
+    double t[6], *p = y + (ptrdiff_t)TILE * s;
+    triangle_of(l, s, t);
+    p[2] -= t[5] * p[3];
+    p[1] -= t[3] * p[2] + t[4] * p[3];
+    p[0] -= t[0] * p[1] + t[1] * p[2] + t[2] * p[3];
+}
+
 // The strips become L^-T of themselves less what the tiles up to `to` hand down.
 static void backward(const panel* l, int to, double* y) {
     for (int s = l->strips - 1; s >= 0; s--) {
-        double t[6], *p = y + (ptrdiff_t)TILE * s;
         backward_strip(l, s, s + 1, to, y);
-        triangle_of(l, s, t);
-        p[2] -= t[5] * p[3];
-        p[1] -= t[3] * p[2] + t[4] * p[3];
-        p[0] -= t[0] * p[1] + t[1] * p[2] + t[2] * p[3];
+        backward_triangle(l, s, y);
+    }
+}
+
+// The same on one thread with the sums of several, which take the tiles below all strips first.
+static void backward_large(const panel* l, double* y) {
+    for (int s = l->strips - 1; s >= 0; s--) {
+        backward_strip(l, s, l->strips, l->high, y);
+        backward_strip(l, s, s + 1, l->strips, y);
+        backward_triangle(l, s, y);
     }
 }
 
@@ -154,37 +186,61 @@ static panel panel_of(const pass* p, const front_record* r) {
     return l;
 }
 
-static bool is_shared(const pass* p, const front_record* r) {
+static bool is_large(const pass* p, const front_record* r) {
     return r->task == p->ldl->symbolic.task_count &&
            (long)(r->rows - r->eliminated) * (long)r->eliminated >= LARGE;
 }
 
-static void forward_front(const pass* p, int s, double* y, double* up) {
-    ruga_ldl* f = p->ldl;
-    const front_record* r = &f->front[s];
-    const int *index = f->memory[r->task].index + r->index, *top = f->top_place;
-    int done = r->eliminated;
-    panel l = panel_of(p, r);
-    for (int i = 0; i < done; i++) {
-        y[i] = p->x[index[i]];
+// A part of `count` for each thread: in large pieces memory is a stream for each.
+static int share_of(int count) {
+    return (count + ruga_threads() - 1) / ruga_threads();
+}
+
+static void load_rows(const row_run* run, int runs, const double* x, double* y) {
+    for (int k = 0; k < runs; k++) {
+        const double* from = x + run[k].step;
+        for (int i = 0; i < run[k].count; i++) {
+            *y++ = from[i];
+        }
     }
-    for (int i = done; i < TILE * l.high; i++) {
+}
+
+static void store_rows(const row_run* run, int runs, const double* y, double* x) {
+    for (int k = 0; k < runs; k++) {
+        double* to = x + run[k].step;
+        for (int i = 0; i < run[k].count; i++) {
+            to[i] = *y++;
+        }
+    }
+}
+
+// What goes to steps of the top fronts is added to `up`, if there is one.
+static void add_rows(const row_run* run, int runs, const double* y, double* up, double* x) {
+    for (int k = 0; k < runs; k++) {
+        double* to = up && run[k].top >= 0 ? up + run[k].top : x + run[k].step;
+        for (int i = 0; i < run[k].count; i++) {
+            to[i] += *y++;
+        }
+    }
+}
+
+static void forward_front(const pass* p, int s, double* y, double* up) {
+    const front_record* r = &p->ldl->front[s];
+    const row_run* run = p->ldl->run + r->run;
+    panel l = panel_of(p, r);
+    load_rows(run, r->own_runs, p->x, y);
+    for (int i = r->eliminated; i < TILE * l.high; i++) {
         y[i] = 0;
     }
-    if (is_shared(p, r)) {
+    if (is_large(p, r) && ruga_threads() > 1) {
         shared_panel shared = {l, y};
         forward(&l, l.strips, y);
-        ruga_parallel_for(l.high - l.strips, ROW_CHUNK, forward_chunk, &shared);
+        ruga_parallel_for(l.high - l.strips, share_of(l.high - l.strips), forward_chunk, &shared);
     } else {
         forward(&l, l.high, y);
     }
-    for (int i = 0; i < done; i++) {
-        p->x[index[i]] = y[i];
-    }
-    for (int i = done; i < r->rows; i++) {
-        double* to = up && top[index[i]] >= 0 ? up + top[index[i]] : p->x + index[i];
-        *to += y[i];
-    }
+    store_rows(run, r->own_runs, y, p->x);
+    add_rows(run + r->own_runs, r->runs - r->own_runs, y + r->eliminated, up, p->x);
 }
 
 // M = D^-1 or, absolute, |D^-1| = (M^2 + |det M| I) / sqrt(tr M^2 + 2 |det M|) for blocks (Cayley-Hamilton).
@@ -222,31 +278,27 @@ static void apply_pivots(const panel* l, int done, bool absolute, double* y) {
 }
 
 static void backward_front(const pass* p, int s, double* y) {
-    ruga_ldl* f = p->ldl;
-    const front_record* r = &f->front[s];
-    const int* index = f->memory[r->task].index + r->index;
-    int done = r->eliminated;
+    const front_record* r = &p->ldl->front[s];
+    const row_run* run = p->ldl->run + r->run;
     panel l = panel_of(p, r);
-    if (done == 0) {
+    if (r->eliminated == 0) {
         return;
     }
-    for (int i = 0; i < r->rows; i++) {
-        y[i] = p->x[index[i]];
-    }
+    load_rows(run, r->runs, p->x, y);
     for (int i = r->rows; i < TILE * l.high; i++) {
         y[i] = 0;
     }
-    apply_pivots(&l, done, p->absolute, y);
-    if (is_shared(p, r)) {
+    apply_pivots(&l, r->eliminated, p->absolute, y);
+    if (!is_large(p, r)) {
+        backward(&l, l.high, y);
+    } else if (ruga_threads() > 1) {
         shared_panel shared = {l, y};
-        ruga_parallel_for(l.strips, STRIP_CHUNK, backward_chunk, &shared);
+        ruga_parallel_for(l.strips, share_of(l.strips), backward_chunk, &shared);
         backward(&l, l.strips, y);
     } else {
-        backward(&l, l.high, y);
+        backward_large(&l, y);
     }
-    for (int i = 0; i < done; i++) {
-        p->x[index[i]] = y[i];
-    }
+    store_rows(run, r->own_runs, y, p->x);
 }
 
 static void forward_tasks(int begin, int end, int chunk, void* context) {
