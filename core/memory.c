@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 The Ruga authors
-#ifdef __linux__
-#define _GNU_SOURCE // madvise
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
+#define _GNU_SOURCE
+#include <sys/mman.h>
 #endif
 #include "core/memory.h"
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
-
 #include <limits.h>
 #include <stdatomic.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,23 +16,49 @@
 enum { HEADER = 64 };
 
 // What is passed over again and again, as a factor is, waits for the tables of small pages more than for memory. So
-// blocks of some large pages ask for them, but for their end: no page is filled for a part of it.
-static void* allocate_default(size_t size, void* context) {
-    enum { LARGE_PAGE = 1 << 21 };
-    (void)context;
-    size_t whole = (size + HEADER - 1) / HEADER * HEADER;
-    void* block = aligned_alloc(size < 2 * (size_t)LARGE_PAGE ? HEADER : LARGE_PAGE, whole);
+// blocks of some large pages ask for them, but for their end: no page is filled for a part of it. They are mapped one by
+// one, so that they go back to the system when they are freed.
+enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 2 * LARGE_PAGE };
+
 #ifdef MADV_HUGEPAGE
-    if (block && size >= 2 * (size_t)LARGE_PAGE) {
-        (void)madvise(block, size / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE); // it may be refused
+static size_t in_large_pages(size_t size) {
+    return (size + LARGE_PAGE - 1) / LARGE_PAGE * LARGE_PAGE;
+}
+
+static void* map_block(size_t size) {
+    size_t whole = in_large_pages(size);
+    char* map = mmap(NULL, whole + LARGE_PAGE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (map == MAP_FAILED) {
+        return NULL;
+    }
+    size_t before = in_large_pages((uintptr_t)map) - (uintptr_t)map;
+    if (before > 0) {
+        (void)munmap(map, before);
+    }
+    (void)munmap(map + before + whole, LARGE_PAGE - before);
+    (void)madvise(map + before, size / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE); // it may be refused
+    return map + before;
+}
+#endif
+
+static void* allocate_default(size_t size, void* context) {
+    (void)context;
+#ifdef MADV_HUGEPAGE
+    if (size >= LARGE_BLOCK) {
+        return map_block(size);
     }
 #endif
-    return block;
+    return aligned_alloc(HEADER, (size + HEADER - 1) / HEADER * HEADER);
 }
 
 static void free_default(void* memory, size_t size, void* context) {
-    (void)size;
     (void)context;
+#ifdef MADV_HUGEPAGE
+    if (size >= LARGE_BLOCK) {
+        (void)munmap(memory, in_large_pages(size));
+        return;
+    }
+#endif
     free(memory);
 }
 

@@ -341,7 +341,7 @@ static ruga_status plan_tasks(ruga_ldl* f) {
     }
     for (int t = 0; t <= s->task_count; t++) {
         task_memory* m = &f->memory[t];
-        m->factor_capacity = m->factor_used;
+        m->factor_capacity = m->factor_used + m->factor_used / 32; // a few pivots may be delayed
         RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used, sizeof(int)));
         RUGA_TRY(ruga_ldl_make_room(&m->upward, &m->upward_capacity, m->upward_used * sizeof(double), 1));
     }
