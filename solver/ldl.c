@@ -49,6 +49,8 @@ void ruga_ldl_destroy(ruga_ldl** ldl) {
     ruga_release(f->guess);
     ruga_release(f->top_place);
     ruga_release(f->top_step);
+    ruga_release(f->level_front);
+    ruga_release(f->level_start);
     ruga_release(f->handed_up);
     ruga_release(f->gather);
     ruga_release(f);
@@ -105,6 +107,46 @@ static ruga_status number_top_steps(ruga_ldl* f) {
     return RUGA_NEW(f->handed_up, (size_t)s->task_count * (size_t)f->top_count);
 }
 
+// Height of the top fronts above the tasks.
+static ruga_status list_levels(ruga_ldl* f) {
+    const ruga_ldl_symbolic* s = &f->symbolic;
+    int* height;
+    RUGA_TRY(RUGA_NEW_ZERO(height, s->count));
+    ruga_status status = RUGA_OK;
+    for (int k = 0; k < s->count; k++) {
+        if (s->top[k]) {
+            f->level_count = height[k] + 1 > f->level_count ? height[k] + 1 : f->level_count;
+            if (s->parent[k] >= 0 && height[s->parent[k]] <= height[k]) {
+                height[s->parent[k]] = height[k] + 1;
+            }
+        }
+    }
+    RUGA_TRY_DONE(RUGA_NEW(f->level_front, s->count));
+    RUGA_TRY_DONE(RUGA_NEW_ZERO(f->level_start, f->level_count + 1));
+    int listed = 0;
+    for (int level = 0; level < f->level_count; level++) {
+        for (int k = 0; k < s->count; k++) {
+            if (s->top[k] && height[k] == level) {
+                f->level_front[listed++] = k;
+            }
+        }
+        f->level_start[level + 1] = listed;
+    }
+done:
+    ruga_release(height);
+    return status;
+}
+
+// Fronts that solves may have at work at the same time.
+static int most_at_once(const ruga_ldl* f) {
+    int most = f->symbolic.task_count;
+    for (int k = 0; k < f->level_count; k++) {
+        int count = f->level_start[k + 1] - f->level_start[k];
+        most = count > most ? count : most;
+    }
+    return most;
+}
+
 ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int* node_start, const bool* last,
                             bool single, ruga_ldl** ldl) {
     ruga_status status = RUGA_OK;
@@ -131,6 +173,7 @@ ruga_status ruga_ldl_create(const ruga_sparse* lower, int node_count, const int*
     RUGA_TRY_DONE(number_top_steps(f));
     mark_last(f, node_start ? node_count : n, node_start, last);
     list_children(f);
+    RUGA_TRY_DONE(list_levels(f));
     *ldl = f;
 done:
     if (status != RUGA_OK) {
@@ -147,7 +190,7 @@ size_t ruga_ldl_bytes(const ruga_ldl* f) {
     size_t n = (size_t)f->symbolic.n, entries = (size_t)f->matrix.start[n];
     size_t bytes = ruga_ldl_symbolic_bytes(&f->symbolic);
     bytes += entries * sizeof(double) + n * (5 * sizeof(double) + sizeof(bool));
-    bytes += (size_t)f->symbolic.count * (sizeof(front_record) + 2 * sizeof(int));
+    bytes += (size_t)f->symbolic.count * (sizeof(front_record) + 3 * sizeof(int));
     size_t tasks = (size_t)f->symbolic.task_count, top = (size_t)f->top_count;
     bytes += ((size_t)f->gather_capacity + tasks * top) * sizeof(double) + (n + top) * sizeof(int);
     for (int t = 0; t <= f->symbolic.task_count; t++) {
@@ -429,7 +472,7 @@ static ruga_status finish(ruga_ldl* f, ruga_factor_info* info) {
         int rows = RUGA_LDL_TILE * ruga_ldl_tiles(f->front[k].rows);
         f->widest = rows > f->widest ? rows : f->widest;
     }
-    RUGA_TRY(RUGA_RESERVE(f->gather, f->gather_capacity, (f->symbolic.task_count + 1) * f->widest));
+    RUGA_TRY(RUGA_RESERVE(f->gather, f->gather_capacity, most_at_once(f) * f->widest));
     RUGA_TRY(set_runs(f));
     f->ready = true;
     return RUGA_OK;

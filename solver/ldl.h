@@ -122,8 +122,10 @@ typedef struct ruga_ldl {
     int* top_place;         // [n] number of a step that a top front eliminates, -1 = none
     int* top_step;          // [top_count] its inverse
     int top_count;
+    int *level_front, *level_start; // top fronts by height above the tasks: level k from level_start[k] on
+    int level_count;
     double* handed_up; // [task_count][top_count] what a task adds to those steps, by its forward pass
-    double* gather;    // [task_count + 1][widest]
+    double* gather;    // [tasks, or the most fronts of a level][widest]
     int gather_capacity;
 } ruga_ldl;
 

@@ -4,9 +4,9 @@
 // Solves with the multifrontal factor: L y = b front by front, children first, then L^T x = D^-1 y, parents
 // first. Each pass reads the factor once, in strips of four columns, and that reading is nearly all the time
 // it takes. Tasks (ldl.h) run side by side: in the forward pass each adds what it hands up to the steps of
-// the top fronts into a vector of its own, and these are added in the order of the tasks; the large panels at
-// the top are shared out by rows (forward) or by columns (backward). Sums are in the same order for any
-// number of threads.
+// the top fronts into a vector of its own, and these are added in the order of the tasks. Of the fronts at the
+// top those that are as far above the tasks run side by side, and what they hand up is added in their order.
+// So sums are in the same order for any number of threads.
 //
 // Where L is stored in single precision, half as many bytes are read, but all is computed in double: the
 // inverse of the stored L D L^T is applied exactly, symmetric and with the inertia of D. ruga_ldl_solve
@@ -20,7 +20,7 @@
 #include <cblas.h>
 #include <math.h>
 
-enum { TILE = RUGA_LDL_TILE, LARGE = 1 << 17 };
+enum { TILE = RUGA_LDL_TILE };
 
 // Four numbers wherever a double may stand.
 typedef double lane4 __attribute__((vector_size(32), aligned(8), may_alias));
@@ -75,7 +75,8 @@ DEFINE_KERNELS(float, column_of_floats, forward_float, backward_float)
 typedef struct pass {
     ruga_ldl* ldl;
     bool absolute;
-    double* x; // [n] by step
+    double* x;        // [n] by step
+    const int* level; // fronts of the level at work
 } pass;
 
 // L of one front in tiles, in double or single precision; behind it D^-1.
@@ -85,24 +86,24 @@ typedef struct panel {
     int high, strips; // tiles of its rows and of its columns
 } panel;
 
-// Strip s and the tiles of rows [begin, end) below its own; y [4 high] are the front's rows.
-static void forward_strip(const panel* l, int s, int begin, int end, double* y) {
-    size_t at = ruga_ldl_tile(l->high, s, begin);
-    double *p = y + (ptrdiff_t)TILE * s, *rows = y + (ptrdiff_t)TILE * begin;
+// Strip s and the tiles below its own; y [4 high] are the front's rows.
+static void forward_strip(const panel* l, int s, double* y) {
+    size_t at = ruga_ldl_tile(l->high, s, s + 1);
+    double *p = y + (ptrdiff_t)TILE * s, *rows = p + TILE;
     if (l->single) {
-        forward_float(l->single + at, end - begin, p, rows);
+        forward_float(l->single + at, l->high - s - 1, p, rows);
     } else {
-        forward_double(l->wide + at, end - begin, p, rows);
+        forward_double(l->wide + at, l->high - s - 1, p, rows);
     }
 }
 
-static void backward_strip(const panel* l, int s, int begin, int end, double* y) {
-    size_t at = ruga_ldl_tile(l->high, s, begin);
-    double *p = y + (ptrdiff_t)TILE * s, *rows = y + (ptrdiff_t)TILE * begin;
+static void backward_strip(const panel* l, int s, double* y) {
+    size_t at = ruga_ldl_tile(l->high, s, s + 1);
+    double *p = y + (ptrdiff_t)TILE * s, *rows = p + TILE;
     if (l->single) {
-        backward_float(l->single + at, end - begin, rows, p);
+        backward_float(l->single + at, l->high - s - 1, rows, p);
     } else {
-        backward_double(l->wide + at, end - begin, rows, p);
+        backward_double(l->wide + at, l->high - s - 1, rows, p);
     }
 }
 
@@ -115,63 +116,27 @@ static void triangle_of(const panel* l, int s, double t[6]) {
     }
 }
 
-// The strips become L^-1 of themselves, and the tiles up to `to` lose what those hand on.
-static void forward(const panel* l, int to, double* y) {
+// The strips become L^-1 of themselves, and the tiles below lose what those hand on.
+static void forward(const panel* l, double* y) {
     for (int s = 0; s < l->strips; s++) {
         double t[6], *p = y + (ptrdiff_t)TILE * s;
         triangle_of(l, s, t);
         p[1] -= t[0] * p[0];
         p[2] -= t[1] * p[0] + t[3] * p[1];
         p[3] -= t[2] * p[0] + t[4] * p[1] + t[5] * p[2];
-        forward_strip(l, s, s + 1, to, y);
+        forward_strip(l, s, y);
     }
 }
 
-static void backward_triangle(const panel* l, int s, double* y) {
-    double t[6], *p = y + (ptrdiff_t)TILE * s;
-    triangle_of(l, s, t);
-    p[2] -= t[5] * p[3];
-    p[1] -= t[3] * p[2] + t[4] * p[3];
-    p[0] -= t[0] * p[1] + t[1] * p[2] + t[2] * p[3];
-}
-
-// The strips become L^-T of themselves less what the tiles up to `to` hand down.
-static void backward(const panel* l, int to, double* y) {
+// The strips become L^-T of themselves less what the tiles below hand down.
+static void backward(const panel* l, double* y) {
     for (int s = l->strips - 1; s >= 0; s--) {
-        backward_strip(l, s, s + 1, to, y);
-        backward_triangle(l, s, y);
-    }
-}
-
-// The same on one thread with the sums of several, which take the tiles below all strips first.
-static void backward_large(const panel* l, double* y) {
-    for (int s = l->strips - 1; s >= 0; s--) {
-        backward_strip(l, s, l->strips, l->high, y);
-        backward_strip(l, s, s + 1, l->strips, y);
-        backward_triangle(l, s, y);
-    }
-}
-
-typedef struct shared_panel {
-    panel l;
-    double* y;
-} shared_panel;
-
-// The tiles [begin, end) below the strips, from all strips.
-static void forward_chunk(int begin, int end, int chunk, void* context) {
-    (void)chunk;
-    const shared_panel* p = context;
-    for (int s = 0; s < p->l.strips; s++) {
-        forward_strip(&p->l, s, p->l.strips + begin, p->l.strips + end, p->y);
-    }
-}
-
-// The strips [begin, end), from all tiles below.
-static void backward_chunk(int begin, int end, int chunk, void* context) {
-    (void)chunk;
-    const shared_panel* p = context;
-    for (int s = end - 1; s >= begin; s--) {
-        backward_strip(&p->l, s, p->l.strips, p->l.high, p->y);
+        double t[6], *p = y + (ptrdiff_t)TILE * s;
+        backward_strip(l, s, y);
+        triangle_of(l, s, t);
+        p[2] -= t[5] * p[3];
+        p[1] -= t[3] * p[2] + t[4] * p[3];
+        p[0] -= t[0] * p[1] + t[1] * p[2] + t[2] * p[3];
     }
 }
 
@@ -184,16 +149,6 @@ static panel panel_of(const pass* p, const front_record* r) {
         l.wide = (const double*)m->factor + r->factor;
     }
     return l;
-}
-
-static bool is_large(const pass* p, const front_record* r) {
-    return r->task == p->ldl->symbolic.task_count &&
-           (long)(r->rows - r->eliminated) * (long)r->eliminated >= LARGE;
-}
-
-// A part of `count` for each thread: in large pieces memory is a stream for each.
-static int share_of(int count) {
-    return (count + ruga_threads() - 1) / ruga_threads();
 }
 
 static void load_rows(const row_run* run, int runs, const double* x, double* y) {
@@ -224,7 +179,8 @@ static void add_rows(const row_run* run, int runs, const double* y, double* up, 
     }
 }
 
-static void forward_front(const pass* p, int s, double* y, double* up) {
+// y [TILE high] becomes L^-1 of the front's pivots, and below them what they hand up.
+static void forward_front(const pass* p, int s, double* y) {
     const front_record* r = &p->ldl->front[s];
     const row_run* run = p->ldl->run + r->run;
     panel l = panel_of(p, r);
@@ -232,15 +188,13 @@ static void forward_front(const pass* p, int s, double* y, double* up) {
     for (int i = r->eliminated; i < TILE * l.high; i++) {
         y[i] = 0;
     }
-    if (is_large(p, r) && ruga_threads() > 1) {
-        shared_panel shared = {l, y};
-        forward(&l, l.strips, y);
-        ruga_parallel_for(l.high - l.strips, share_of(l.high - l.strips), forward_chunk, &shared);
-    } else {
-        forward(&l, l.high, y);
-    }
+    forward(&l, y);
     store_rows(run, r->own_runs, y, p->x);
-    add_rows(run + r->own_runs, r->runs - r->own_runs, y + r->eliminated, up, p->x);
+}
+
+static void hand_up(const pass* p, int s, const double* y, double* up) {
+    const front_record* r = &p->ldl->front[s];
+    add_rows(p->ldl->run + r->run + r->own_runs, r->runs - r->own_runs, y + r->eliminated, up, p->x);
 }
 
 // M = D^-1 or, absolute, |D^-1| = (M^2 + |det M| I) / sqrt(tr M^2 + 2 |det M|) for blocks (Cayley-Hamilton).
@@ -289,15 +243,7 @@ static void backward_front(const pass* p, int s, double* y) {
         y[i] = 0;
     }
     apply_pivots(&l, r->eliminated, p->absolute, y);
-    if (!is_large(p, r)) {
-        backward(&l, l.high, y);
-    } else if (ruga_threads() > 1) {
-        shared_panel shared = {l, y};
-        ruga_parallel_for(l.strips, share_of(l.strips), backward_chunk, &shared);
-        backward(&l, l.strips, y);
-    } else {
-        backward_large(&l, y);
-    }
+    backward(&l, y);
     store_rows(run, r->own_runs, y, p->x);
 }
 
@@ -313,7 +259,9 @@ static void forward_tasks(int begin, int end, int chunk, void* context) {
         }
         for (int k = s->task[t]; k < s->task[t + 1]; k++) {
             if (!s->top[k]) {
-                forward_front(p, k, f->gather + (size_t)t * (size_t)f->widest, up);
+                double* y = f->gather + (size_t)t * (size_t)f->widest;
+                forward_front(p, k, y);
+                hand_up(p, k, y, up);
             }
         }
     }
@@ -333,35 +281,59 @@ static void backward_tasks(int begin, int end, int chunk, void* context) {
     }
 }
 
-static void take_handed_up(const ruga_ldl* f, double* x) {
+// Fronts [begin, end) of the top fronts by level, of one level that begins at the first of `gather`.
+static void forward_level(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    for (int i = begin; i < end; i++) {
+        forward_front(p, p->level[i], p->ldl->gather + (size_t)i * (size_t)p->ldl->widest);
+    }
+}
+
+static void backward_level(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    for (int i = begin; i < end; i++) {
+        backward_front(p, p->level[i], p->ldl->gather + (size_t)i * (size_t)p->ldl->widest);
+    }
+}
+
+static void forward_top(pass* p) {
+    const ruga_ldl* f = p->ldl;
     for (int t = 0; t < f->symbolic.task_count; t++) {
-        const double* up = f->handed_up + (size_t)t * (size_t)f->top_count;
+        double* up = f->handed_up + (size_t)t * (size_t)f->top_count;
         for (int i = 0; i < f->top_count; i++) {
-            x[f->top_step[i]] += up[i];
+            p->x[f->top_step[i]] += up[i];
         }
+    }
+    for (int k = 0; k < f->level_count; k++) {
+        int count = f->level_start[k + 1] - f->level_start[k];
+        p->level = f->level_front + f->level_start[k];
+        ruga_parallel_for(count, 1, forward_level, p);
+        for (int i = 0; i < count; i++) {
+            hand_up(p, p->level[i], f->gather + (size_t)i * (size_t)f->widest, NULL);
+        }
+    }
+}
+
+static void backward_top(pass* p) {
+    const ruga_ldl* f = p->ldl;
+    for (int k = f->level_count - 1; k >= 0; k--) {
+        p->level = f->level_front + f->level_start[k];
+        ruga_parallel_for(f->level_start[k + 1] - f->level_start[k], 1, backward_level, p);
     }
 }
 
 // y = (L D L^T)^-1 b with scaled b and y, by unknown; may be the same.
 static void solve_scaled(ruga_ldl* f, bool absolute, const double* b, double* y) {
     const ruga_ldl_symbolic* s = &f->symbolic;
-    pass p = {f, absolute, f->answer};
-    double* top = f->gather + (size_t)s->task_count * (size_t)f->widest;
+    pass p = {f, absolute, f->answer, NULL};
     for (int k = 0; k < s->n; k++) {
         p.x[k] = b[s->order[k]];
     }
     ruga_parallel_for(s->task_count, 1, forward_tasks, &p);
-    take_handed_up(f, p.x);
-    for (int k = 0; k < s->count; k++) {
-        if (s->top[k]) {
-            forward_front(&p, k, top, NULL);
-        }
-    }
-    for (int k = s->count - 1; k >= 0; k--) {
-        if (s->top[k]) {
-            backward_front(&p, k, top);
-        }
-    }
+    forward_top(&p);
+    backward_top(&p);
     ruga_parallel_for(s->task_count, 1, backward_tasks, &p);
     for (int k = 0; k < s->n; k++) {
         y[s->order[k]] = p.x[k];
