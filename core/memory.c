@@ -52,6 +52,7 @@ static void* allocate_default(size_t size, void* context) {
 }
 
 static void free_default(void* memory, size_t size, void* context) {
+    (void)size;
     (void)context;
 #ifdef MADV_HUGEPAGE
     if (size >= LARGE_BLOCK) {
