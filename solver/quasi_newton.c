@@ -6,7 +6,7 @@
 // indefinite while wrinkles move); the last certified exact factor starts the next frame. A KKT solve returns steps
 // with H d = 0, so every iterate stays feasible. facts: a wrinkled valley is curved on the scale of the thickness,
 // so any quadratic model serves for about 0.2 h only; cheap steps with a fresh enough factor win over Newton's. What
-// takes 240 of them, or six factors that serve for one each, is no wrinkle but a stiff panel that turns: where the
+// takes 480 of them, or twelve factors that serve for one each, is no wrinkle but a stiff panel that turns: where the
 // Hessian is convex Newton's leaps go on.
 #include "core/wide.h"
 #include "solver/skin.h"
@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { PAIRS = 8, REFRESH = 24, SLOW = 240, MOST_IN_VAIN = 12, MAX_ITERATIONS = 3000 };
+enum { PAIRS = 8, REFRESH = 24, SLOW = 480, MOST_IN_VAIN = 12, MAX_ITERATIONS = 3000 };
 enum { GRADIENT, PROJECTED, DIRECTION, OLD_PROJECTED, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
 
 typedef struct memory {
