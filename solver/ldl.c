@@ -286,26 +286,14 @@ ruga_status ruga_ldl_make_factor_room(const ruga_ldl* f, task_memory* m, size_t 
     return RUGA_OK;
 }
 
-// All tasks' L in one piece again where one outgrew its part. What was in it is gone.
-static ruga_status join_factors(ruga_ldl* f) {
-    bool joined = f->factor != NULL;
+// Room for L of all tasks, one after another, each with as much as it asks for.
+static ruga_status reserve_factors(ruga_ldl* f) {
     size_t total = 0, pad = RUGA_LDL_TILE * RUGA_LDL_TILE;
     for (int t = 0; t <= f->symbolic.task_count; t++) {
         task_memory* m = &f->memory[t];
-        joined = joined && !m->apart;
         m->factor_capacity = (m->factor_capacity + pad - 1) / pad * pad;
         total += m->factor_capacity * entry_size(f);
     }
-    if (joined) {
-        return RUGA_OK;
-    }
-    for (int t = 0; t <= f->symbolic.task_count; t++) {
-        ruga_release(f->memory[t].apart ? f->memory[t].factor : NULL);
-        f->memory[t].apart = false;
-    }
-    ruga_release(f->factor);
-    f->factor = NULL;
-    f->factor_bytes = 0;
     RUGA_TRY(ruga_ldl_make_room(&f->factor, &f->factor_bytes, total, 1));
     char* next = f->factor;
     for (int t = 0; t <= f->symbolic.task_count; t++) {
@@ -364,7 +352,7 @@ static ruga_status factor_top(ruga_ldl* f) {
 }
 
 // What each task needs where no pivot is delayed: then nothing is allocated after the first factorisation,
-// and in the first one nothing is moved. Otherwise the second joins what was moved.
+// and in the first one nothing is moved.
 static ruga_status plan_tasks(ruga_ldl* f) {
     const ruga_ldl_symbolic* s = &f->symbolic;
     for (int k = 0; k < s->count; k++) {
@@ -388,7 +376,7 @@ static ruga_status plan_tasks(ruga_ldl* f) {
         RUGA_TRY(ruga_ldl_make_room((void**)&m->index, &m->index_capacity, m->index_used, sizeof(int)));
         RUGA_TRY(ruga_ldl_make_room(&m->upward, &m->upward_capacity, m->upward_used * sizeof(double), 1));
     }
-    return RUGA_OK;
+    return reserve_factors(f);
 }
 
 // The first serves the top, too, whose fronts are made when the tasks are done.
@@ -488,7 +476,6 @@ ruga_status ruga_ldl_numeric(ruga_ldl* f, const double* values, bool in_single, 
         RUGA_TRY(plan_tasks(f));
         f->planned = true;
     }
-    RUGA_TRY(join_factors(f));
     RUGA_TRY(reserve_stacks(f));
     start_tasks(f);
     ruga_parallel_for(f->symbolic.task_count, 1, factor_tasks, f);
