@@ -467,9 +467,9 @@ static void check_flap(ruga_method method, double young) {
     assert_near(range[0], -theta, 0.2 * DEGREE);
     assert_near(range[1], -theta, 0.2 * DEGREE);
     assert_ok(ruga_state_handle_forces(s.state, force));
-    // What is held beyond the crease has weight too, which the handle carries. At 10 TPa the last digits of positions
-    // come near this bound with some kernels of the BLAS; at 100 GPa forces are known to 1e-6.
-    assert_near(force[2], 900 * 0.3e-3 * 0.02 * 9.81, (young > 1e12 ? 1e-3 : 1e-5) * force[2]);
+    // What is held beyond the crease has weight too, which the handle carries.
+    print_message("force off by %.1e of it\n", fabs(force[2] / (900 * 0.3e-3 * 0.02 * 9.81) - 1));
+    assert_near(force[2], 900 * 0.3e-3 * 0.02 * 9.81, (young > 1e12 ? 1e-4 : 1e-5) * force[2]);
     scene_free(&s);
 }
 
