@@ -30,19 +30,16 @@ ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d) {
     return RUGA_OK;
 }
 
-// A mode without stiffness, as of a crease that turns freely, has the curvature that round-off leaves, of either sign. A
-// shift of 1e-12 of the stiffest vertex's takes it away: what is convex then is as much of a minimum as double can tell.
-// The factor is that of a shifted matrix, so it is not kept.
-static ruga_status convex_to_round_off(ruga_skin* skin, bool* convex) {
+// A mode without stiffness, as of a crease that turns freely, has the curvature that round-off leaves, of either sign: down
+// to -1e-12 of the stiffest vertex's, what is convex is as much of a minimum as double can tell.
+static double round_off_of_curvature(const ruga_skin* skin) {
     double most = 0;
     const ruga_sparse* pattern = ruga_shell_pattern(skin->shell);
     for (int j = 0; j < skin->n; j++) {
         double area = skin->model->vertex_area[j / 3];
         most = area > 0 ? fmax(most, skin->stiffness[pattern->start[j]] / area) : most;
     }
-    RUGA_TRY(ruga_skin_refactor(skin, 1e-12 * most));
-    *convex = skin->factor_right;
-    return RUGA_OK;
+    return 1e-12 * most;
 }
 
 // Closing gaps of round-off strains a skin of 10 TPa enough to be far from equilibrium again. The certificate's factor
@@ -78,18 +75,26 @@ ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double t
     }
     RUGA_TRY(ruga_skin_factor(skin, x, 0, 0));
     skin->work.certificates++;
-    bool convex = skin->factor_right, moved;
-    if (!convex) {
-        RUGA_TRY(convex_to_round_off(skin, &convex));
+    const double* along = NULL; // a direction of negative curvature
+    double round_off = round_off_of_curvature(skin);
+    if (!skin->factor_right) {
+        RUGA_TRY(ruga_negative_curvature_of_factor(skin, round_off, &along));
     }
-    if (convex) {
+    if (!skin->factor_right && !along) {
+        RUGA_TRY(ruga_skin_refactor(skin, round_off));
+    }
+    if (skin->factor_right) {
         result->outcome = RUGA_OUTCOME_MINIMUM;
         RUGA_TRY(skin->m > 0 ? settle(skin, x, *target, result) : RUGA_OK);
-        skin->factor_right = skin->factor_right && skin->factor_exact;
+        skin->factor_right = skin->factor_exact; // that of a shifted matrix, or of another state, is not kept
         return RUGA_OK;
     }
+    bool moved;
     RUGA_TRY(ruga_skin_energy(skin, x, &result->terms, gradient));
-    RUGA_TRY(ruga_negative_curvature_step(skin, x, &result->terms, gradient, &moved));
+    RUGA_TRY(ruga_negative_curvature_step(skin, along, x, &result->terms, gradient, &moved));
+    if (along && !moved) {
+        RUGA_TRY(ruga_negative_curvature_step(skin, NULL, x, &result->terms, gradient, &moved));
+    }
     if (!moved && *target <= 2e-3 * tolerance) {
         result->outcome = RUGA_OUTCOME_SADDLE;
         return RUGA_OK;

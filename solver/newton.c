@@ -147,7 +147,7 @@ ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, b
             return RUGA_OK;
         }
         if (shifted && ruga_largest_move(skin->n, d) < 0.1 * skin->model->skin.thickness) {
-            RUGA_TRY(ruga_negative_curvature_step(skin, x, &result->terms, gradient, &stuck));
+            RUGA_TRY(ruga_negative_curvature_step(skin, NULL, x, &result->terms, gradient, &stuck));
             if (stuck) {
                 continue; // it moved
             }

@@ -69,8 +69,7 @@ ruga_status ruga_skin_create_factor(const ruga_skin* skin, ruga_factor** factor)
 
 // Energy at x; the full gradient [n] where not NULL (held components are not zeroed).
 ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* terms, double* gradient);
-// Tells the hinges of creases that x is the state now: what they follow.
-void ruga_skin_follow(ruga_skin* skin, const double* x);
+void ruga_skin_follow(ruga_skin* skin, const double* x); // tells the hinges of creases that x is the state now
 // force [handles][3] N, on the skin: the reactions that gradient and constraints leave at what each handle holds.
 ruga_status ruga_skin_handle_forces(ruga_skin* skin, const double* x, double* force);
 
@@ -98,8 +97,7 @@ ruga_status ruga_skin_project(ruga_skin* skin, const double* gradient, double* o
 void ruga_skin_clear_void_rows(const ruga_skin* skin, double* y); // zeroes the entries of left-out rows in y [m]
 // Moves x the least so that H x = H B q and held components are at their target.
 ruga_status ruga_skin_restore(ruga_skin* skin, double* x);
-// |H x - H B q| / |H B q|
-double ruga_skin_constraint_residual(ruga_skin* skin, const double* x);
+double ruga_skin_constraint_residual(ruga_skin* skin, const double* x); // |H x - H B q| / |H B q|
 
 // y = (K - C^T M^-1 C) v as last assembled. multiply: held components zeroed; v is zero there.
 void ruga_skin_apply(const ruga_skin* skin, const double* v, double* y);
@@ -135,10 +133,12 @@ ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double t
 ruga_status ruga_armijo_search(ruga_skin* skin, const double* d, double* x, ruga_skin_terms* terms,
                                double* gradient, double* step);
 
-// A step along a direction of negative curvature of K at x, where the exact factor has the wrong inertia:
-// *moved = false where none was found. x, terms and gradient follow.
-ruga_status ruga_negative_curvature_step(ruga_skin* skin, double* x, ruga_skin_terms* terms, double* gradient,
-                                         bool* moved);
+// A step along a direction of negative curvature of K at x, where the exact factor has the wrong inertia: `along`, or if NULL
+// one that shifted factors show; *moved = false where none was found. x, terms and gradient follow.
+ruga_status ruga_negative_curvature_step(ruga_skin* skin, const double* along, double* x, ruga_skin_terms* terms,
+                                         double* gradient, bool* moved);
+// *along: one that this factor itself shows, of curvature below -least in N/m^3; NULL where none is clear.
+ruga_status ruga_negative_curvature_of_factor(ruga_skin* skin, double least, const double** along);
 double ruga_largest_move(int n, const double* d); // of a vertex, in a vector [n]
 double ruga_dot_product(int n, const double* a, const double* b);
 enum { RUGA_SKIN_WORK_VECTORS = 24 };
