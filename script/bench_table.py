@@ -12,8 +12,8 @@ import pathlib
 import statistics
 import sys
 
-COLUMNS = ("unknowns, clusters", "method", "threads", "median s", "worst s", "to mark s", "units", "worst", "iterations",
-           "factorisations", "MINRES", "residual", "minima", "peak / factor", "setup, frames", "lag h: largest, rms")
+COLUMNS = ("unknowns, clusters", "method", "threads", "median s", "worst s", "to mark s", "units", "worst", "of one thread",
+           "iterations", "factorisations", "MINRES", "residual", "minima", "peak / factor", "setup, frames", "lag h: largest, rms")
 
 
 def median(row, key):
@@ -30,14 +30,27 @@ def case(row):
     return row["unknowns"], row["clusters"]
 
 
+def method(row):
+    return f"damped {1e3 * row['relaxation']:g} ms" if row["relaxation"] else row["method"]
+
+
+def units_of_one_thread(row, rows):
+    """Frames on more threads over one thread's factorisation of the same frame: median and worst."""
+    for base in rows:
+        if case(base) == case(row) and method(base) == method(row) and base["threads"] == 1 < row["threads"]:
+            units = [f["seconds"] / (b["seconds"] / b["units"]) for f, b in zip(row["frames"], base["frames"])]
+            return f"{statistics.median(units):.1f}, {max(units):.1f}"
+    return ""
+
+
 def cells(row, rows):
     frames = row["frames"]
     lag = max(f["lag_max"] for f in frames)
     linear = median(row, "linear") if row["method"] in ("newton-minres", "paper") else 0
-    return (f"{row['unknowns']:,}, {row['clusters']:,}", row["method"], row["threads"], f"{row['median']:.3g}",
+    return (f"{row['unknowns']:,}, {row['clusters']:,}", method(row), row["threads"], f"{row['median']:.3g}",
             f"{row['worst']:.3g}", f"{row['to_mark']:.3g}" if row["to_mark"] and row["method"] != "paper" else "",
-            f"{row['units_median']:.1f}", f"{row['units_worst']:.1f}", f"{median(row, 'iterations'):.0f}",
-            f"{median(row, 'factorizations'):.1f}", f"{linear:,.0f}" if linear else "",
+            f"{row['units_median']:.1f}", f"{row['units_worst']:.1f}", units_of_one_thread(row, rows),
+            f"{median(row, 'iterations'):.0f}", f"{median(row, 'factorizations'):.1f}", f"{linear:,.0f}" if linear else "",
             f"{max(f['residual'] for f in frames):.0e}", f"{row['minima']} of {len(frames)}",
             f"{row['memory_over_factor']:.2f}", setup_frames(row, rows),
             f"{lag:.1f}, {max(f['lag_rms'] for f in frames):.1f}" if lag else "")
@@ -47,10 +60,10 @@ def growth(rows):
     """Exponents of time against unknowns from about 12,500 to each larger case."""
     for row in rows:
         for base in rows:
-            same = (row["method"], row["threads"]) == (base["method"], base["threads"])
+            same = (method(row), row["threads"]) == (method(base), base["threads"])
             if same and row["method"] in ("quasi-newton", "damped") and 12e3 < base["unknowns"] < 13e3 < row["unknowns"]:
                 over = math.log(row["unknowns"] / base["unknowns"])
-                yield (f"{row['method']}, {row['threads']} threads, {base['unknowns']:,} to {row['unknowns']:,} "
+                yield (f"{method(row)}, {row['threads']} threads, {base['unknowns']:,} to {row['unknowns']:,} "
                        f"({row['clusters']:,} clusters): n^{math.log(row['median'] / base['median']) / over:.2f} median, "
                        f"n^{math.log(row['worst'] / base['worst']) / over:.2f} worst")
 
@@ -58,9 +71,9 @@ def growth(rows):
 def speed_up(rows):
     for row in rows:
         for base in rows:
-            if case(row) == case(base) and row["method"] == base["method"] and row["threads"] > base["threads"]:
+            if case(row) == case(base) and method(row) == method(base) and row["threads"] > base["threads"]:
                 bits = "same bits" if row["same_bits"] else "OTHER BITS"
-                yield (f"{row['unknowns']:,}, {row['clusters']:,}, {row['method']}: {row['threads']} threads "
+                yield (f"{row['unknowns']:,}, {row['clusters']:,}, {method(row)}: {row['threads']} threads "
                        f"{base['median'] / row['median']:.2f} times as fast, {bits}")
 
 
@@ -70,7 +83,7 @@ def main():
     if len(sys.argv) != 2 or not paths:
         sys.exit("usage: bench_table.py DIR, the folder of the cases' files CASE.json that script/bench wrote")
     rows = [row for path in paths for row in json.loads(path.read_text())]
-    rows.sort(key=lambda row: (row["unknowns"], row["clusters"], row["threads"]))
+    rows.sort(key=lambda row: (row["unknowns"], row["clusters"], row["threads"], row["relaxation"]))
     lines = ["| " + " | ".join(COLUMNS) + " |", "|---" * len(COLUMNS) + "|"]
     lines += ["| " + " | ".join(map(str, cells(row, rows))) + " |" for row in rows]
     lines += ["", *growth(rows), "", *speed_up(rows), "",

@@ -356,13 +356,14 @@ static void print_row(const run* r) {
 static void write_json(const bench* b, const run* r, bool same_bits, double memory_ratio, options* o) {
     (void)fprintf(
         o->json,
-        "%s\n{\"unknowns\": %d, \"clusters\": %d, \"elements\": %d, \"method\": \"%s\", \"threads\": %d, "
-        "\"setup\": %.4g, \"median\": %.4g, \"worst\": %.4g, \"to_mark\": %.4g, \"units_median\": %.4g, "
+        "%s\n{\"unknowns\": %d, \"clusters\": %d, \"elements\": %d, \"method\": \"%s\", \"relaxation\": %g, "
+        "\"threads\": %d, \"setup\": %.4g, \"median\": %.4g, \"worst\": %.4g, \"to_mark\": %.4g, \"units_median\": %.4g, "
         "\"units_worst\": %.4g, \"unit_seconds\": %.4g, \"minima\": %d, \"same_bits\": %s, "
         "\"memory_over_factor\": %.4g, "
         "\"frames\": [",
         o->first_row ? "[" : ",", 3 * b->mesh.vertex_count, b->model->clusters.count,
-        b->model->lattice.element_count, r->variant->name, r->threads, b->setup, column(r, seconds_of, false),
+        b->model->lattice.element_count, r->variant->name,
+        r->variant->motion == RUGA_SKIN_DAMPED ? o->relaxation : 0, r->threads, b->setup, column(r, seconds_of, false),
         column(r, seconds_of, true), r->frames[0].to_mark, column(r, units_of, false),
         column(r, units_of, true), r->frames[0].unit, minima(r), same_bits ? "true" : "false", memory_ratio);
     o->first_row = false;
