@@ -186,8 +186,8 @@ function start(index, skins, wrinkled, embedded, values) {
   const spacing = meta.frames > 1 ? (meta.time.at(-1) - meta.time[0]) / (meta.frames - 1) : 1;
   const rate = Math.min(30, Math.max(5, 1 / spacing));
   function tick(now) {
-    if (playing) {
-      const k = playing.from + Math.floor((now - playing.since) / 1000 * rate);
+    if (playing) { // `now` is when the browser began this picture, which may be before the click
+      const k = playing.from + Math.floor(Math.max(0, now - playing.since) / 1000 * rate);
       if (k >= meta.frames + rate / 2) play(true), playing.from = 0;
       else if (Math.min(k, meta.frames - 1) !== frame) show(Math.min(k, meta.frames - 1));
     }
