@@ -329,7 +329,8 @@ static void factor_tasks(int begin, int end, int chunk, void* context) {
     (void)chunk;
     ruga_ldl* f = context;
     const ruga_ldl_symbolic* s = &f->symbolic;
-    for (int t = begin; t < end; t++) {
+    for (int i = begin; i < end; i++) {
+        int t = s->by_work[i];
         task_memory* m = &f->memory[t];
         front_stack* stack = take_stack(f);
         for (int k = s->task[t]; k < s->task[t + 1] && m->status == RUGA_OK; k++) {

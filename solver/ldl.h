@@ -6,6 +6,7 @@
 #ifndef RUGA_SOLVER_LDL_H
 #define RUGA_SOLVER_LDL_H
 
+#include "solver/ldl_panel.h"
 #include "solver/ldl_symbolic.h"
 #include "solver/linear.h"
 
@@ -37,23 +38,6 @@ static inline size_t ruga_front_work(bool shared, size_t full, size_t below) {
 // All that a front takes on the stack while it is made: its update matrix, itself, pivots, peaks and work.
 static inline size_t ruga_front_size(bool shared, size_t full, size_t below) {
     return ruga_update_size((int)below) + full * (full + below + 3) + ruga_front_work(shared, full, below);
-}
-
-// L of a front is stored in tiles of 4 x 4, by columns: strips of 4 columns one after another, each from the
-// tile on the diagonal down, filled up with zeros. So a solve reads it in one stream. Behind it D^-1
-// [eliminated][2].
-enum { RUGA_LDL_TILE = 4 };
-static inline int ruga_ldl_tiles(int count) {
-    return (count + RUGA_LDL_TILE - 1) / RUGA_LDL_TILE;
-}
-// Where tile (row, strip) of a front with `high` tiles of rows stands, row >= strip.
-static inline size_t ruga_ldl_tile(int high, int strip, int row) {
-    size_t s = (size_t)strip, before = s * (size_t)high - (s > 0 ? s * (s - 1) / 2 : 0);
-    return RUGA_LDL_TILE * RUGA_LDL_TILE * (before + (size_t)(row - strip));
-}
-static inline size_t ruga_ldl_stored_size(int rows, int eliminated) {
-    int strips = ruga_ldl_tiles(eliminated);
-    return ruga_ldl_tile(ruga_ldl_tiles(rows), strips, strips) + 2 * (size_t)eliminated;
 }
 
 // Where fronts are made, one for each thread at work: two stacks, from its two ends, fronts of odd depth on

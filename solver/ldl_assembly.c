@@ -21,6 +21,7 @@ typedef struct assembly {
     ruga_front front;
     front_stack* stack;
     real* update;
+    size_t stored; // where L of the front begins
 } assembly;
 
 static real* end_of_stack(const front_stack* stack) {
@@ -223,34 +224,56 @@ static void make_update(assembly* a) {
     }
 }
 
-// The strip of columns [4 s, 4 s + 4) below the diagonal, of which there are `done`, into tiles `to`.
+// Tiles [begin, end) of the strip of columns [4 s, 4 s + 4) below the diagonal, of which there are `done`.
 #define DEFINE_STORE(type, store)                                                                            \
-    RUGA_WIDE static void store(const real* a, int rows, int done, type* to) {                               \
+    RUGA_WIDE static void store(const real* a, int rows, int done, int s, int begin, int end, type* to) {    \
         enum { TILE = RUGA_LDL_TILE };                                                                       \
-        for (int first = 0; first < done; first += TILE) {                                                   \
-            int columns = done - first < TILE ? done - first : TILE;                                         \
-            const real* from = a + (size_t)first * (size_t)rows;                                             \
-            for (int row = first; row < rows; row += TILE, to += TILE * TILE) {                              \
-                if (row > first && columns == TILE && rows - row >= TILE) {                                  \
-                    for (int k = 0; k < TILE; k++) {                                                         \
-                        for (int r = 0; r < TILE; r++) {                                                     \
-                            to[TILE * k + r] = (type)from[(size_t)k * (size_t)rows + (size_t)(row + r)];     \
-                        }                                                                                    \
-                    }                                                                                        \
-                    continue;                                                                                \
-                }                                                                                            \
+        int first = TILE * s, columns = done - first < TILE ? done - first : TILE;                           \
+        const real* from = a + (size_t)first * (size_t)rows;                                                 \
+        for (int row = TILE * begin; row < TILE * end; row += TILE, to += TILE * TILE) {                     \
+            if (row > first && columns == TILE && rows - row >= TILE) {                                      \
                 for (int k = 0; k < TILE; k++) {                                                             \
                     for (int r = 0; r < TILE; r++) {                                                         \
-                        bool below = k < columns && row + r < rows && row + r > first + k;                   \
-                        to[TILE * k + r] =                                                                   \
-                            below ? (type)from[(size_t)k * (size_t)rows + (size_t)(row + r)] : 0;            \
+                        to[TILE * k + r] = (type)from[(size_t)k * (size_t)rows + (size_t)(row + r)];         \
                     }                                                                                        \
+                }                                                                                            \
+                continue;                                                                                    \
+            }                                                                                                \
+            for (int k = 0; k < TILE; k++) {                                                                 \
+                for (int r = 0; r < TILE; r++) {                                                             \
+                    bool below = k < columns && row + r < rows && row + r > first + k;                       \
+                    to[TILE * k + r] =                                                                       \
+                        below ? (type)from[(size_t)k * (size_t)rows + (size_t)(row + r)] : 0;                \
                 }                                                                                            \
             }                                                                                                \
         }                                                                                                    \
     }
 DEFINE_STORE(double, store_double)
 DEFINE_STORE(float, store_float)
+
+static void store_run(const assembly* a, int s, int begin, int end, size_t at) {
+    const ruga_front* f = &a->front;
+    at += a->stored;
+    if (a->ldl->single) {
+        store_float(f->a, f->rows, f->eliminated, s, begin, end, (float*)a->memory->factor + at);
+    } else {
+        store_double(f->a, f->rows, f->eliminated, s, begin, end, (double*)a->memory->factor + at);
+    }
+}
+
+static void store_strips(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const assembly* a = context;
+    const bool top = a->ldl->symbolic.top[a->s];
+    int high = ruga_ldl_tiles(a->front.rows), strips = ruga_ldl_tiles(a->front.eliminated);
+    for (int s = begin; s < end; s++) {
+        ruga_ldl_block b = ruga_ldl_block_at(high, strips, top, top ? s - s % RUGA_LDL_BLOCK : 0);
+        store_run(a, s, s, b.end, ruga_ldl_diagonal(&b, s));
+        for (int k = 0; k < ruga_ldl_pieces(&b); k++) {
+            store_run(a, s, ruga_ldl_piece(&b, k), ruga_ldl_piece(&b, k + 1), ruga_ldl_head(&b, k, s));
+        }
+    }
+}
 
 static void store_pivots(const ruga_front* f, const ruga_ldl* ldl, void* factor, size_t at) {
     for (int k = 0; k < 2 * f->eliminated; k++) {
@@ -266,14 +289,11 @@ static ruga_status store_factor(assembly* a) {
     const ruga_ldl* ldl = a->ldl;
     task_memory* m = a->memory;
     const ruga_front* f = &a->front;
-    size_t size = ruga_ldl_stored_size(f->rows, f->eliminated), begin = m->factor_used;
-    RUGA_TRY(ruga_ldl_make_factor_room(ldl, m, begin + size));
-    if (ldl->single) {
-        store_float(f->a, f->rows, f->eliminated, (float*)m->factor + begin);
-    } else {
-        store_double(f->a, f->rows, f->eliminated, (double*)m->factor + begin);
-    }
-    m->factor_used = begin + size;
+    size_t size = ruga_ldl_stored_size(f->rows, f->eliminated);
+    a->stored = m->factor_used;
+    RUGA_TRY(ruga_ldl_make_factor_room(ldl, m, a->stored + size));
+    ruga_parallel_for(ruga_ldl_tiles(f->eliminated), RUGA_LDL_BLOCK, store_strips, a);
+    m->factor_used = a->stored + size;
     store_pivots(f, ldl, m->factor, m->factor_used - 2 * (size_t)f->eliminated);
     return RUGA_OK;
 }
@@ -310,13 +330,13 @@ static ruga_status store_front(assembly* a) {
     ruga_ldl* ldl = a->ldl;
     task_memory* m = a->memory;
     const ruga_front* f = &a->front;
-    size_t rows = (size_t)f->rows, late = (size_t)(f->full - f->eliminated), begin = m->factor_used;
+    size_t rows = (size_t)f->rows, late = (size_t)(f->full - f->eliminated);
     RUGA_TRY(store_factor(a));
     front_record* record = &ldl->front[a->s];
     RUGA_TRY(keep_delayed(a, record));
     size_t* handed = ruga_ldl_used(m, record);
     m->stack_used[!record->far] = ruga_ldl_below_children(ldl, a->s);
-    record->factor = begin;
+    record->factor = a->stored;
     record->index = m->index_used;
     record->update = *handed;
     record->rows = f->rows;

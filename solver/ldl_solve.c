@@ -5,8 +5,9 @@
 // first. Each pass reads the factor once, in strips of four columns, and that reading is nearly all the time
 // it takes. Tasks (ldl.h) run side by side: in the forward pass each adds what it hands up to the steps of
 // the top fronts into a vector of its own, and these are added in the order of the tasks. Of the fronts at the
-// top those that are as far above the tasks run side by side, and what they hand up is added in their order.
-// So sums are in the same order for any number of threads.
+// top those that are as far above the tasks run side by side, block after block of strips: their triangles
+// first, then the rows below (forward) or the strips (backward) of all of them are shared out. What they hand
+// up is added in their order. So sums are in the same order for any number of threads.
 //
 // Where L is stored in single precision, half as many bytes are read, but all is computed in double: the
 // inverse of the stored L D L^T is applied exactly, symmetric and with the inertia of D. ruga_ldl_solve
@@ -19,8 +20,10 @@
 
 #include <cblas.h>
 #include <math.h>
+#include <string.h>
 
 enum { TILE = RUGA_LDL_TILE };
+enum { SHARES = 4, CHUNK = 4096 }; // of a block's strips, for several threads; steps of a copy
 
 // Four numbers wherever a double may stand.
 typedef double lane4 __attribute__((vector_size(32), aligned(8), may_alias));
@@ -75,65 +78,71 @@ DEFINE_KERNELS(float, column_of_floats, forward_float, backward_float)
 typedef struct pass {
     ruga_ldl* ldl;
     bool absolute;
-    double* x;        // [n] by step
+    double* x;           // [n] by step
+    const double *scale; // [n] by unknown, of right-hand side and solution; NULL = they are scaled
+    const double* from;  // right-hand side and solution, by unknown
+    double* to;
     const int* level; // fronts of the level at work
+    int strip;        // first of their block at work
+    int pieces;       // of their rows, the most
+    int shares;       // of a block's strips: one reads best, more serve more threads; the sums are the same
 } pass;
 
-// L of one front in tiles, in double or single precision; behind it D^-1.
+// L of one front, in double or single precision.
 typedef struct panel {
     const double* wide; // one of them
     const float* single;
     int high, strips; // tiles of its rows and of its columns
+    bool top;
 } panel;
 
-// Strip s and the tiles below its own; y [4 high] are the front's rows.
-static void forward_strip(const panel* l, int s, double* y) {
-    size_t at = ruga_ldl_tile(l->high, s, s + 1);
-    double *p = y + (ptrdiff_t)TILE * s, *rows = p + TILE;
+// Strip s and its tiles of rows [begin, end), which stand at `at`; y [4 high] are the front's rows.
+static void forward_strip(const panel* l, int s, int begin, int end, size_t at, double* y) {
+    double *p = y + (ptrdiff_t)TILE * s, *rows = y + (ptrdiff_t)TILE * begin;
     if (l->single) {
-        forward_float(l->single + at, l->high - s - 1, p, rows);
+        forward_float(l->single + at, end - begin, p, rows);
     } else {
-        forward_double(l->wide + at, l->high - s - 1, p, rows);
+        forward_double(l->wide + at, end - begin, p, rows);
     }
 }
 
-static void backward_strip(const panel* l, int s, double* y) {
-    size_t at = ruga_ldl_tile(l->high, s, s + 1);
-    double *p = y + (ptrdiff_t)TILE * s, *rows = p + TILE;
+static void backward_strip(const panel* l, int s, int begin, int end, size_t at, double* y) {
+    double *p = y + (ptrdiff_t)TILE * s, *rows = y + (ptrdiff_t)TILE * begin;
     if (l->single) {
-        backward_float(l->single + at, l->high - s - 1, rows, p);
+        backward_float(l->single + at, end - begin, rows, p);
     } else {
-        backward_double(l->wide + at, l->high - s - 1, rows, p);
+        backward_double(l->wide + at, end - begin, rows, p);
     }
 }
 
-// The six entries below the diagonal of strip s, by columns.
-static void triangle_of(const panel* l, int s, double t[6]) {
+// The six entries below the diagonal of the tile at `at`, by columns.
+static void triangle_of(const panel* l, size_t at, double t[6]) {
     static const int place[6] = {1, 2, 3, TILE + 2, TILE + 3, 2 * TILE + 3};
-    size_t at = ruga_ldl_tile(l->high, s, s);
     for (int k = 0; k < 6; k++) {
         t[k] = l->single ? (double)l->single[at + (size_t)place[k]] : l->wide[at + (size_t)place[k]];
     }
 }
 
-// The strips become L^-1 of themselves, and the tiles below lose what those hand on.
-static void forward(const panel* l, double* y) {
-    for (int s = 0; s < l->strips; s++) {
+// The strips of the block become L^-1 of themselves, and its rows below lose what those hand on.
+static void forward(const panel* l, const ruga_ldl_block* b, double* y) {
+    for (int s = b->first; s < b->last; s++) {
+        size_t at = ruga_ldl_diagonal(b, s);
         double t[6], *p = y + (ptrdiff_t)TILE * s;
-        triangle_of(l, s, t);
+        triangle_of(l, at, t);
         p[1] -= t[0] * p[0];
         p[2] -= t[1] * p[0] + t[3] * p[1];
         p[3] -= t[2] * p[0] + t[4] * p[1] + t[5] * p[2];
-        forward_strip(l, s, y);
+        forward_strip(l, s, s + 1, b->end, at + TILE * TILE, y);
     }
 }
 
-// The strips become L^-T of themselves less what the tiles below hand down.
-static void backward(const panel* l, double* y) {
-    for (int s = l->strips - 1; s >= 0; s--) {
+// The strips of the block become L^-T of themselves less what its rows below hand down.
+static void backward(const panel* l, const ruga_ldl_block* b, double* y) {
+    for (int s = b->last - 1; s >= b->first; s--) {
+        size_t at = ruga_ldl_diagonal(b, s);
         double t[6], *p = y + (ptrdiff_t)TILE * s;
-        backward_strip(l, s, y);
-        triangle_of(l, s, t);
+        backward_strip(l, s, s + 1, b->end, at + TILE * TILE, y);
+        triangle_of(l, at, t);
         p[2] -= t[5] * p[3];
         p[1] -= t[3] * p[2] + t[4] * p[3];
         p[0] -= t[0] * p[1] + t[1] * p[2] + t[2] * p[3];
@@ -142,7 +151,9 @@ static void backward(const panel* l, double* y) {
 
 static panel panel_of(const pass* p, const front_record* r) {
     const task_memory* m = &p->ldl->memory[r->task];
-    panel l = {.high = ruga_ldl_tiles(r->rows), .strips = ruga_ldl_tiles(r->eliminated)};
+    panel l = {.high = ruga_ldl_tiles(r->rows),
+               .strips = ruga_ldl_tiles(r->eliminated),
+               .top = r->task == p->ldl->symbolic.task_count};
     if (p->ldl->single) {
         l.single = (const float*)m->factor + r->factor;
     } else {
@@ -179,17 +190,26 @@ static void add_rows(const row_run* run, int runs, const double* y, double* up, 
     }
 }
 
+// y [TILE high] are the front's pivots, and zero below them.
+static void load_pivots(const pass* p, const front_record* r, const panel* l, double* y) {
+    load_rows(p->ldl->run + r->run, r->own_runs, p->x, y);
+    for (int i = r->eliminated; i < TILE * l->high; i++) {
+        y[i] = 0;
+    }
+}
+
+static void store_pivots(const pass* p, const front_record* r, const double* y) {
+    store_rows(p->ldl->run + r->run, r->own_runs, y, p->x);
+}
+
 // y [TILE high] becomes L^-1 of the front's pivots, and below them what they hand up.
 static void forward_front(const pass* p, int s, double* y) {
     const front_record* r = &p->ldl->front[s];
-    const row_run* run = p->ldl->run + r->run;
     panel l = panel_of(p, r);
-    load_rows(run, r->own_runs, p->x, y);
-    for (int i = r->eliminated; i < TILE * l.high; i++) {
-        y[i] = 0;
-    }
-    forward(&l, y);
-    store_rows(run, r->own_runs, y, p->x);
+    ruga_ldl_block b = ruga_ldl_block_at(l.high, l.strips, l.top, 0);
+    load_pivots(p, r, &l, y);
+    forward(&l, &b, y);
+    store_pivots(p, r, y);
 }
 
 static void hand_up(const pass* p, int s, const double* y, double* up) {
@@ -213,7 +233,7 @@ static void apply_pair(double a, double b, double c, bool absolute, double* x, d
 }
 
 static double pivot_entry(const panel* l, int k) {
-    size_t place = ruga_ldl_tile(l->high, l->strips, l->strips) + (size_t)k;
+    size_t place = TILE * TILE * ruga_ldl_strips(l->high, l->strips) + (size_t)k;
     return l->single ? (double)l->single[place] : l->wide[place];
 }
 
@@ -231,20 +251,24 @@ static void apply_pivots(const panel* l, int done, bool absolute, double* y) {
     }
 }
 
-static void backward_front(const pass* p, int s, double* y) {
-    const front_record* r = &p->ldl->front[s];
-    const row_run* run = p->ldl->run + r->run;
-    panel l = panel_of(p, r);
-    if (r->eliminated == 0) {
-        return;
-    }
-    load_rows(run, r->runs, p->x, y);
-    for (int i = r->rows; i < TILE * l.high; i++) {
+// y [TILE high] are D^-1 of the front's pivots, and below them the solution.
+static void load_front(const pass* p, const front_record* r, const panel* l, double* y) {
+    load_rows(p->ldl->run + r->run, r->runs, p->x, y);
+    for (int i = r->rows; i < TILE * l->high; i++) {
         y[i] = 0;
     }
-    apply_pivots(&l, r->eliminated, p->absolute, y);
-    backward(&l, y);
-    store_rows(run, r->own_runs, y, p->x);
+    apply_pivots(l, r->eliminated, p->absolute, y);
+}
+
+static void backward_front(const pass* p, int s, double* y) {
+    const front_record* r = &p->ldl->front[s];
+    panel l = panel_of(p, r);
+    ruga_ldl_block b = ruga_ldl_block_at(l.high, l.strips, l.top, 0);
+    if (r->eliminated > 0) {
+        load_front(p, r, &l, y);
+        backward(&l, &b, y);
+        store_pivots(p, r, y);
+    }
 }
 
 static void forward_tasks(int begin, int end, int chunk, void* context) {
@@ -252,11 +276,10 @@ static void forward_tasks(int begin, int end, int chunk, void* context) {
     const pass* p = context;
     ruga_ldl* f = p->ldl;
     const ruga_ldl_symbolic* s = &f->symbolic;
-    for (int t = begin; t < end; t++) {
+    for (int i = begin; i < end; i++) {
+        int t = s->by_work[i];
         double* up = f->handed_up + (size_t)t * (size_t)f->top_count;
-        for (int i = 0; i < f->top_count; i++) {
-            up[i] = 0;
-        }
+        memset(up, 0, (size_t)f->top_count * sizeof *up);
         for (int k = s->task[t]; k < s->task[t + 1]; k++) {
             if (!s->top[k]) {
                 double* y = f->gather + (size_t)t * (size_t)f->widest;
@@ -272,7 +295,8 @@ static void backward_tasks(int begin, int end, int chunk, void* context) {
     const pass* p = context;
     ruga_ldl* f = p->ldl;
     const ruga_ldl_symbolic* s = &f->symbolic;
-    for (int t = begin; t < end; t++) {
+    for (int i = begin; i < end; i++) {
+        int t = s->by_work[i];
         for (int k = s->task[t + 1] - 1; k >= s->task[t]; k--) {
             if (!s->top[k]) {
                 backward_front(p, k, f->gather + (size_t)t * (size_t)f->widest);
@@ -281,35 +305,142 @@ static void backward_tasks(int begin, int end, int chunk, void* context) {
     }
 }
 
-// Fronts [begin, end) of the top fronts by level, of one level that begins at the first of `gather`.
-static void forward_level(int begin, int end, int chunk, void* context) {
+// Front i of the level at work, with its rows y and its block at work. False where it has fewer blocks.
+typedef struct share {
+    const front_record* record;
+    panel l;
+    ruga_ldl_block block;
+    double* y;
+} share;
+static bool take_share(const pass* p, int i, share* a) {
+    a->record = &p->ldl->front[p->level[i]];
+    a->l = panel_of(p, a->record);
+    a->y = p->ldl->gather + (size_t)i * (size_t)p->ldl->widest;
+    a->block = ruga_ldl_block_at(a->l.high, a->l.strips, true, p->strip);
+    return p->strip < a->l.strips;
+}
+
+// The triangles of the block of fronts [begin, end).
+static void forward_triangles(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const pass* p = context;
     for (int i = begin; i < end; i++) {
-        forward_front(p, p->level[i], p->ldl->gather + (size_t)i * (size_t)p->ldl->widest);
+        share a;
+        bool any = take_share(p, i, &a);
+        if (p->strip == 0) {
+            load_pivots(p, a.record, &a.l, a.y);
+        }
+        if (any) {
+            forward(&a.l, &a.block, a.y);
+        }
+        if (any && a.block.last == a.l.strips) {
+            store_pivots(p, a.record, a.y);
+        }
     }
 }
 
-static void backward_level(int begin, int end, int chunk, void* context) {
+static void forward_piece(const share* a, int piece) {
+    int first = ruga_ldl_piece(&a->block, piece), end = ruga_ldl_piece(&a->block, piece + 1);
+    for (int s = a->block.first; s < a->block.last; s++) {
+        forward_strip(&a->l, s, first, end, ruga_ldl_head(&a->block, piece, s), a->y);
+    }
+}
+
+// The rows below the block: pieces [begin, end), numbered by p->pieces to a front.
+static void forward_pieces(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    for (int k = begin; k < end; k++) {
+        share a;
+        if (take_share(p, k / p->pieces, &a) && k % p->pieces < ruga_ldl_pieces(&a.block)) {
+            forward_piece(&a, k % p->pieces);
+        }
+    }
+}
+
+// What the rows below the block hand down to a share of its strips.
+static void backward_strips(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    const int shares = p->shares, size = RUGA_LDL_BLOCK / shares;
+    for (int k = begin; k < end; k++) {
+        share a;
+        if (!take_share(p, k / shares, &a)) {
+            continue;
+        }
+        const ruga_ldl_block* b = &a.block;
+        int first = b->first + size * (k % shares), last = first + size < b->last ? first + size : b->last;
+        for (int piece = ruga_ldl_pieces(b) - 1; piece >= 0; piece--) {
+            int row = ruga_ldl_piece(b, piece), end_row = ruga_ldl_piece(b, piece + 1);
+            for (int s = last - 1; s >= first; s--) {
+                backward_strip(&a.l, s, row, end_row, ruga_ldl_head(b, piece, s), a.y);
+            }
+        }
+    }
+}
+
+static void backward_triangles(int begin, int end, int chunk, void* context) {
     (void)chunk;
     const pass* p = context;
     for (int i = begin; i < end; i++) {
-        backward_front(p, p->level[i], p->ldl->gather + (size_t)i * (size_t)p->ldl->widest);
+        share a;
+        if (take_share(p, i, &a)) {
+            backward(&a.l, &a.block, a.y);
+        }
+        if (p->strip == 0) {
+            store_pivots(p, a.record, a.y);
+        }
     }
+}
+
+static void load_level(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    for (int i = begin; i < end; i++) {
+        share a;
+        (void)take_share(p, i, &a);
+        load_front(p, a.record, &a.l, a.y);
+    }
+}
+
+static void add_handed_up(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    const ruga_ldl* f = p->ldl;
+    for (int t = 0; t < f->symbolic.task_count; t++) {
+        const double* up = f->handed_up + (size_t)t * (size_t)f->top_count;
+        for (int i = begin; i < end; i++) {
+            p->x[f->top_step[i]] += up[i];
+        }
+    }
+}
+
+// The level at work becomes number k; returns its fronts, *blocks of the one with most.
+static int enter_level(pass* p, int k, int* blocks) {
+    const ruga_ldl* f = p->ldl;
+    int count = f->level_start[k + 1] - f->level_start[k], strips = 0, high = 0;
+    p->level = f->level_front + f->level_start[k];
+    for (int i = 0; i < count; i++) {
+        panel l = panel_of(p, &f->front[p->level[i]]);
+        strips = l.strips > strips ? l.strips : strips;
+        high = l.high > high ? l.high : high;
+    }
+    p->shares = ruga_threads() > 1 ? SHARES : 1;
+    p->pieces = ruga_chunk_count(high, RUGA_LDL_PIECE);
+    *blocks = ruga_chunk_count(strips, RUGA_LDL_BLOCK);
+    return count;
 }
 
 static void forward_top(pass* p) {
     const ruga_ldl* f = p->ldl;
-    for (int t = 0; t < f->symbolic.task_count; t++) {
-        double* up = f->handed_up + (size_t)t * (size_t)f->top_count;
-        for (int i = 0; i < f->top_count; i++) {
-            p->x[f->top_step[i]] += up[i];
-        }
-    }
+    ruga_parallel_for(f->top_count, CHUNK / 4, add_handed_up, p);
     for (int k = 0; k < f->level_count; k++) {
-        int count = f->level_start[k + 1] - f->level_start[k];
-        p->level = f->level_front + f->level_start[k];
-        ruga_parallel_for(count, 1, forward_level, p);
+        int blocks, count = enter_level(p, k, &blocks);
+        for (int block = 0; block < blocks; block++) {
+            p->strip = RUGA_LDL_BLOCK * block;
+            ruga_parallel_for(count, 1, forward_triangles, p);
+            ruga_parallel_for(p->pieces * count, 1, forward_pieces, p);
+        }
         for (int i = 0; i < count; i++) {
             hand_up(p, p->level[i], f->gather + (size_t)i * (size_t)f->widest, NULL);
         }
@@ -317,27 +448,48 @@ static void forward_top(pass* p) {
 }
 
 static void backward_top(pass* p) {
-    const ruga_ldl* f = p->ldl;
-    for (int k = f->level_count - 1; k >= 0; k--) {
-        p->level = f->level_front + f->level_start[k];
-        ruga_parallel_for(f->level_start[k + 1] - f->level_start[k], 1, backward_level, p);
+    for (int k = p->ldl->level_count - 1; k >= 0; k--) {
+        int blocks, count = enter_level(p, k, &blocks);
+        p->strip = 0;
+        ruga_parallel_for(count, 1, load_level, p);
+        for (int block = blocks - 1; block >= 0; block--) {
+            p->strip = RUGA_LDL_BLOCK * block;
+            ruga_parallel_for(p->shares * count, 1, backward_strips, p);
+            ruga_parallel_for(count, 1, backward_triangles, p);
+        }
     }
 }
 
-// y = (L D L^T)^-1 b with scaled b and y, by unknown; may be the same.
-static void solve_scaled(ruga_ldl* f, bool absolute, const double* b, double* y) {
-    const ruga_ldl_symbolic* s = &f->symbolic;
-    pass p = {f, absolute, f->answer, NULL};
-    for (int k = 0; k < s->n; k++) {
-        p.x[k] = b[s->order[k]];
+static void load_steps(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    const int* order = p->ldl->symbolic.order;
+    for (int k = begin; k < end; k++) {
+        int i = order[k];
+        p->x[k] = p->scale ? p->from[i] * p->scale[i] : p->from[i];
     }
+}
+
+static void store_steps(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const pass* p = context;
+    const int* order = p->ldl->symbolic.order;
+    for (int k = begin; k < end; k++) {
+        int i = order[k];
+        p->to[i] = p->scale ? p->x[k] * p->scale[i] : p->x[k];
+    }
+}
+
+// to = S (L D L^T)^-1 S from, by unknown, or with |D|; without a scale S = I. May be the same.
+static void solve_steps(ruga_ldl* f, bool absolute, const double* scale, const double* from, double* to) {
+    const ruga_ldl_symbolic* s = &f->symbolic;
+    pass p = {.ldl = f, .absolute = absolute, .x = f->answer, .scale = scale, .from = from, .to = to};
+    ruga_parallel_for(s->n, CHUNK, load_steps, &p);
     ruga_parallel_for(s->task_count, 1, forward_tasks, &p);
     forward_top(&p);
     backward_top(&p);
     ruga_parallel_for(s->task_count, 1, backward_tasks, &p);
-    for (int k = 0; k < s->n; k++) {
-        y[s->order[k]] = p.x[k];
-    }
+    ruga_parallel_for(s->n, CHUNK, store_steps, &p);
 }
 
 // defect = S (b - A x) for x = S guess; returns |b - A x|. *backward: the defect relative to what round-off
@@ -358,7 +510,7 @@ static double find_defect(ruga_ldl* f, double* backward) {
 // One step of iterative refinement, taken back where it does not help. True where another may.
 static bool refine(ruga_ldl* f, double* residual, double* backward) {
     int n = f->symbolic.n;
-    solve_scaled(f, false, f->defect, f->defect);
+    solve_steps(f, false, NULL, f->defect, f->defect);
     cblas_daxpy(n, 1, f->defect, 1, f->guess, 1);
     double before = *residual;
     *residual = find_defect(f, backward);
@@ -379,7 +531,7 @@ ruga_status ruga_ldl_solve(ruga_ldl* f, const double* b, double* x) {
     for (int i = 0; i < n; i++) {
         f->load[i] = b[i] * f->scale[i];
     }
-    solve_scaled(f, false, f->load, f->guess);
+    solve_steps(f, false, NULL, f->load, f->guess);
     double residual = find_defect(f, &backward);
     for (int step = 0; step < most && residual > enough * size && backward > round_off; step++) {
         if (!refine(f, &residual, &backward)) {
@@ -392,25 +544,16 @@ ruga_status ruga_ldl_solve(ruga_ldl* f, const double* b, double* x) {
     return RUGA_OK;
 }
 
-// x = S (L D L^T)^-1 S b, or with |D|, as the factor stands.
-static ruga_status solve_once(ruga_ldl* f, bool absolute, const double* b, double* x) {
+ruga_status ruga_ldl_solve_absolute(ruga_ldl* f, const double* b, double* x) {
     RUGA_ASSERT(f->ready);
-    for (int i = 0; i < f->symbolic.n; i++) {
-        f->load[i] = b[i] * f->scale[i];
-    }
-    solve_scaled(f, absolute, f->load, f->guess);
-    for (int i = 0; i < f->symbolic.n; i++) {
-        x[i] = f->guess[i] * f->scale[i];
-    }
+    solve_steps(f, true, f->scale, b, x);
     return RUGA_OK;
 }
 
-ruga_status ruga_ldl_solve_absolute(ruga_ldl* f, const double* b, double* x) {
-    return solve_once(f, true, b, x);
-}
-
 ruga_status ruga_ldl_solve_rough(ruga_ldl* f, const double* b, double* x) {
-    return solve_once(f, false, b, x);
+    RUGA_ASSERT(f->ready);
+    solve_steps(f, false, f->scale, b, x);
+    return RUGA_OK;
 }
 
 // The stored M = L D L^T is A + E, and M has the inertia of D. If the spectral radius of G = I - M^-1 A = M^-1 E, by
@@ -434,7 +577,7 @@ ruga_status ruga_ldl_prove_inertia(ruga_ldl* f, bool* proven) {
     double before = cblas_dnrm2(n, f->guess, 1), left = before;
     for (int k = 0; k < MOST && !*proven && left <= before; k++) {
         ruga_sparse_multiply_symmetric(&f->matrix, f->guess, f->defect);
-        solve_scaled(f, false, f->defect, f->defect);
+        solve_steps(f, false, NULL, f->defect, f->defect);
         cblas_daxpy(n, -1, f->defect, 1, f->guess, 1);
         left = cblas_dnrm2(n, f->guess, 1);
         *proven = left < 1e-3 / sqrt(n) * before;

@@ -24,6 +24,7 @@ void ruga_ldl_symbolic_clear(ruga_ldl_symbolic* symbolic) {
     ruga_release(symbolic->entry_row);
     ruga_release(symbolic->entry_column);
     ruga_release(symbolic->task);
+    ruga_release(symbolic->by_work);
     ruga_release(symbolic->top);
     *symbolic = (ruga_ldl_symbolic){0};
 }
@@ -412,6 +413,31 @@ done:
     return status;
 }
 
+static double front_work(const ruga_ldl_symbolic* symbolic, int s) {
+    double w = symbolic->pivot[s + 1] - symbolic->pivot[s];
+    double r = (double)(symbolic->row_start[s + 1] - symbolic->row_start[s]);
+    return w * r * r + w * w * r + w * w * w / 3;
+}
+
+// The largest first, so that threads end at about the same time.
+static ruga_status sort_tasks(ruga_ldl_symbolic* symbolic) {
+    double* work = NULL;
+    RUGA_TRY(RUGA_NEW_ZERO(work, symbolic->task_count));
+    ruga_status status = RUGA_NEW(symbolic->by_work, symbolic->task_count);
+    for (int t = 0; t < symbolic->task_count && status == RUGA_OK; t++) {
+        for (int s = symbolic->task[t]; s < symbolic->task[t + 1]; s++) {
+            work[t] += symbolic->top[s] ? 0 : front_work(symbolic, s);
+        }
+        int place = t;
+        for (; place > 0 && work[symbolic->by_work[place - 1]] < work[t]; place--) {
+            symbolic->by_work[place] = symbolic->by_work[place - 1];
+        }
+        symbolic->by_work[place] = t;
+    }
+    ruga_release(work);
+    return status;
+}
+
 // Subtrees with at most 1/16 of the work become tasks, neighbouring small ones together; what is above
 // them is `top`. The split depends on the matrix alone.
 static ruga_status share_out(ruga_ldl_symbolic* symbolic) {
@@ -423,9 +449,7 @@ static ruga_status share_out(ruga_ldl_symbolic* symbolic) {
     RUGA_TRY_DONE(RUGA_NEW(symbolic->task, count + 1));
     double limit = symbolic->flops / 16, filled = 0;
     for (int s = 0; s < count; s++) {
-        double w = symbolic->pivot[s + 1] - symbolic->pivot[s];
-        double r = (double)(symbolic->row_start[s + 1] - symbolic->row_start[s]);
-        work[s] += w * r * r + w * w * r + w * w * w / 3;
+        work[s] += front_work(symbolic, s);
         symbolic->top[s] = work[s] > limit;
         if (symbolic->parent[s] >= 0) {
             work[symbolic->parent[s]] += work[s];
@@ -449,6 +473,7 @@ static ruga_status share_out(ruga_ldl_symbolic* symbolic) {
         }
     }
     symbolic->task[symbolic->task_count] = count;
+    RUGA_TRY_DONE(sort_tasks(symbolic));
 done:
     ruga_release(work);
     return status;

@@ -31,7 +31,8 @@ typedef struct ruga_ldl_symbolic {
     // Work shared out: task t < task_count has the supernodes [task[t], task[t + 1]) not marked `top`;
     // those marked are ancestors of several tasks and come after all of them, in ascending order.
     int task_count;
-    int* task; // [task_count + 1]
+    int* task;    // [task_count + 1]
+    int* by_work; // [task_count] tasks, those with most work first
     bool* top; // [count]
     double entries, flops;
 } ruga_ldl_symbolic;
