@@ -8,8 +8,8 @@
 // so any quadratic model serves for about 0.2 h only; cheap steps with a fresh enough factor win over Newton's. What
 // takes 480 of them, or twelve factors that serve for one each, is no wrinkle but a stiff panel that turns: where the
 // Hessian is convex Newton's leaps go on.
-#include "core/wide.h"
 #include "solver/skin.h"
+#include "solver/vectors.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,55 +18,66 @@ enum { PAIRS = 8, REFRESH = 24, SLOW = 480, MOST_IN_VAIN = 12, MAX_ITERATIONS = 
 enum { GRADIENT, PROJECTED, DIRECTION, OLD_PROJECTED, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
 
 typedef struct memory {
-    int count, newest; // pairs kept, slot of the newest
-    double rho[PAIRS]; // 1 / s.y
-    double step;       // last taken, in directions: 0 = none, or the energy could not be lowered
+    int count, newest;           // pairs kept, slot of the newest
+    double rho[PAIRS];           // 1 / s.y
+    double cross[PAIRS][PAIRS];  // [i][k] = s_i . y_k of slots, where k is newer than i
+    double step;                 // last taken, in directions: 0 = none, or the energy could not be lowered
 } memory;
-
-// y += a x
-RUGA_WIDE static void add_scaled(int n, double a, const double* restrict x, double* restrict y) {
-    for (int i = 0; i < n; i++) {
-        y[i] += a * x[i];
-    }
-}
 
 static int slot_of(const memory* m, int age) {
     return (m->newest - age + 2 * PAIRS) % PAIRS;
 }
 
-// d = - (two-loop recursion) g
+// The pairs by age, the newest first.
+typedef struct pairs {
+    const double *step[PAIRS], *difference[PAIRS];
+} pairs;
+
+static void list_pairs(ruga_skin* skin, const memory* m, pairs* list) {
+    for (int age = 0; age < m->count; age++) {
+        list->step[age] = ruga_skin_vector(skin, STEPS + slot_of(m, age));
+        list->difference[age] = ruga_skin_vector(skin, DIFFERENCES + slot_of(m, age));
+    }
+}
+
+// d = - (two-loop recursion) g. Its products with sums of pairs are made of those with the pairs themselves, so that
+// each loop reads all pairs at once, twice.
 static ruga_status lbfgs_direction(ruga_skin* skin, const memory* m, const double* g, double* d) {
-    double a[PAIRS], *q = ruga_skin_vector(skin, WORK);
-    memcpy(q, g, (size_t)skin->n * sizeof *q);
+    double a[PAIRS], factor[PAIRS], *q = ruga_skin_vector(skin, WORK);
+    pairs list;
+    list_pairs(skin, m, &list);
+    ruga_dot_products(skin->n, m->count, list.step, g, a);
     for (int age = 0; age < m->count; age++) {
         int k = slot_of(m, age);
-        const double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
-        a[k] = m->rho[k] * ruga_dot_product(skin->n, s, q);
-        add_scaled(skin->n, -a[k], y, q);
+        for (int newer = 0; newer < age; newer++) {
+            a[age] += factor[newer] * m->cross[k][slot_of(m, newer)];
+        }
+        a[age] *= m->rho[k];
+        factor[age] = -a[age];
     }
+    ruga_add_vectors(skin->n, m->count, list.difference, factor, 1, g, q);
     RUGA_TRY(ruga_skin_solve_rough(skin, q, d));
+    ruga_dot_products(skin->n, m->count, list.difference, d, factor);
     for (int age = m->count - 1; age >= 0; age--) {
         int k = slot_of(m, age);
-        const double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
-        double b = m->rho[k] * ruga_dot_product(skin->n, y, d);
-        add_scaled(skin->n, a[k] - b, s, d);
+        for (int older = age + 1; older < m->count; older++) {
+            factor[age] += factor[older] * m->cross[slot_of(m, older)][k];
+        }
+        factor[age] = a[age] - m->rho[k] * factor[age];
     }
-    for (int i = 0; i < skin->n; i++) {
-        d[i] = -d[i];
-    }
+    ruga_add_vectors(skin->n, m->count, list.step, factor, -1, d, d);
     return RUGA_OK;
 }
 
 // Keeps the pair of the step just made where its curvature is positive. Differences of projected gradients are as good
 // as those of gradients, since all steps are in the null space, and need no projection before a solve.
 static void remember(ruga_skin* skin, memory* m, const double* x, const double* projected) {
+    const double minus_one = -1;
     int k = (m->newest + 1) % PAIRS;
-    double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k);
+    double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k), product[PAIRS];
     const double *old_x = ruga_skin_vector(skin, OLD_POSITION), *old_p = ruga_skin_vector(skin, OLD_PROJECTED);
-    for (int i = 0; i < skin->n; i++) {
-        s[i] = x[i] - old_x[i];
-        y[i] = projected[i] - old_p[i];
-    }
+    ruga_add_vectors(skin->n, 1, &old_x, &minus_one, 1, x, s);
+    ruga_add_vectors(skin->n, 1, &old_p, &minus_one, 1, projected, y);
     double sy = ruga_dot_product(skin->n, s, y);
     if (!(sy > 1e-6 * m->step * fabs(ruga_dot_product(skin->n, s, old_p)))) {
         return;
@@ -74,6 +85,12 @@ static void remember(ruga_skin* skin, memory* m, const double* x, const double* 
     m->rho[k] = 1 / sy;
     m->newest = k;
     m->count = m->count < PAIRS ? m->count + 1 : PAIRS;
+    pairs list;
+    list_pairs(skin, m, &list);
+    ruga_dot_products(skin->n, m->count - 1, list.step + 1, y, product);
+    for (int age = 1; age < m->count; age++) {
+        m->cross[slot_of(m, age)][k] = product[age - 1];
+    }
 }
 
 // One direction and line search; *move is the direction's length.

@@ -14,31 +14,6 @@
 
 #include <string.h>
 
-RUGA_WIDE static double dot_product(int n, const double* a, const double* b) {
-    // Sixteen sums let the compiler use vector registers and hide their latency; their order is fixed.
-    enum { SUMS = 16 };
-    double s[SUMS] = {0};
-    int i = 0;
-    for (; i + SUMS <= n; i += SUMS) {
-        for (int k = 0; k < SUMS; k++) {
-            s[k] += a[i + k] * b[i + k];
-        }
-    }
-    for (; i < n; i++) {
-        s[0] += a[i] * b[i];
-    }
-    for (int half = SUMS / 2; half > 0; half /= 2) {
-        for (int k = 0; k < half; k++) {
-            s[k] += s[k + half];
-        }
-    }
-    return s[0];
-}
-
-double ruga_dot_product(int n, const double* a, const double* b) {
-    return dot_product(n, a, b);
-}
-
 double ruga_largest_move(int n, const double* d) {
     double largest = 0;
     for (int i = 0; i < n; i += 3) {

@@ -14,6 +14,7 @@
 #include "solver/hinges.h"
 #include "solver/linear.h"
 #include "solver/model.h"
+#include "solver/vectors.h"
 #include "solver/work.h"
 
 typedef struct ruga_skin_terms {
@@ -140,7 +141,6 @@ ruga_status ruga_negative_curvature_step(ruga_skin* skin, const double* along, d
 // *along: one that this factor itself shows, of curvature below -least in N/m^3; NULL where none is clear.
 ruga_status ruga_negative_curvature_of_factor(ruga_skin* skin, double least, const double** along);
 double ruga_largest_move(int n, const double* d); // of a vertex, in a vector [n]
-double ruga_dot_product(int n, const double* a, const double* b);
 enum { RUGA_SKIN_WORK_VECTORS = 24 };
 // Work vector i of length `size`.
 static inline double* ruga_skin_vector(ruga_skin* skin, int i) {
