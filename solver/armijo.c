@@ -12,9 +12,7 @@
 enum { MAX_BACKTRACKS = 30, MAX_DOUBLINGS = 3 };
 
 static ruga_status evaluate(ruga_skin* skin, const double* x, const double* d, double b, ruga_skin_terms* terms) {
-    for (int i = 0; i < skin->n; i++) {
-        skin->trial[i] = x[i] + b * d[i];
-    }
+    ruga_add_vectors(skin->n, 1, &d, &b, 1, x, skin->trial);
     return ruga_skin_energy(skin, skin->trial, terms, skin->trial_gradient);
 }
 

@@ -204,18 +204,57 @@ size_t ruga_ldl_bytes(const ruga_ldl* f) {
     return bytes + f->run_capacity * sizeof *f->run + f->factor_bytes;
 }
 
-// max[i] = max_j |a_ij| scale_i scale_j
-static void row_maxima(const ruga_sparse* a, const double* values, const double* scale, double* max) {
+// Columns are shared out for the scaling; each share has its own maxima of rows.
+enum { SCALE_SHARES = 4 };
+
+typedef struct scaling {
+    ruga_ldl* f;
+    const double* values;
+    double* max[SCALE_SHARES]; // [n]
+} scaling;
+
+static void share_maxima(int begin, int end, int chunk, void* context) {
+    const scaling* c = context;
+    const ruga_sparse* a = &c->f->matrix;
+    const double* scale = c->f->scale;
+    double* max = c->max[chunk];
     memset(max, 0, (size_t)a->columns * sizeof *max);
-    for (int j = 0; j < a->columns; j++) {
+    for (int j = begin; j < end; j++) {
         double column_max = 0;
         for (int p = a->start[j]; p < a->start[j + 1]; p++) {
             int i = a->index[p];
-            double size = fabs(values[p]) * scale[i] * scale[j];
+            double size = fabs(c->values[p]) * scale[i] * scale[j];
             max[i] = size > max[i] ? size : max[i];
             column_max = size > column_max ? size : column_max;
         }
         max[j] = column_max > max[j] ? column_max : max[j];
+    }
+}
+
+static int share_size(const ruga_ldl* f) {
+    return ruga_chunk_count(f->symbolic.n, SCALE_SHARES);
+}
+
+// max[0][i] = max_j |a_ij| scale_i scale_j
+static void row_maxima(scaling* c) {
+    int n = c->f->symbolic.n, shares = ruga_chunk_count(n, share_size(c->f));
+    ruga_parallel_for(n, share_size(c->f), share_maxima, c);
+    for (int k = 1; k < shares; k++) {
+        for (int i = 0; i < n; i++) {
+            c->max[0][i] = c->max[k][i] > c->max[0][i] ? c->max[k][i] : c->max[0][i];
+        }
+    }
+}
+
+static void scale_values(int begin, int end, int chunk, void* context) {
+    (void)chunk;
+    const scaling* c = context;
+    const ruga_sparse* a = &c->f->matrix;
+    const double* scale = c->f->scale;
+    for (int j = begin; j < end; j++) {
+        for (int p = a->start[j]; p < a->start[j + 1]; p++) {
+            a->value[p] = c->values[p] * scale[j] * scale[a->index[p]];
+        }
     }
 }
 
@@ -231,12 +270,13 @@ static double power_below(double x) {
 // then hardly any pivot of a soft K is refused for the size of its H (measured on sheets with clusters).
 static void scale_matrix(ruga_ldl* f, const double* values) {
     int n = f->symbolic.n;
-    double *scale = f->scale, *max = f->defect;
+    scaling c = {f, values, {f->defect, f->guess, f->load, f->answer}};
+    double *scale = f->scale, *max = c.max[0];
     for (int i = 0; i < n; i++) {
         scale[i] = f->last[i] ? 0 : 1;
     }
     for (int pass = 0; pass < 2; pass++) {
-        row_maxima(&f->matrix, values, scale, max);
+        row_maxima(&c);
         for (int i = 0; i < n; i++) {
             scale[i] = max[i] > 0 ? scale[i] / sqrt(max[i]) : scale[i];
         }
@@ -244,17 +284,13 @@ static void scale_matrix(ruga_ldl* f, const double* values) {
     for (int i = 0; i < n; i++) {
         scale[i] = f->last[i] ? 1 : power_below(scale[i]);
     }
-    row_maxima(&f->matrix, values, scale, max);
+    row_maxima(&c);
     for (int i = 0; i < n; i++) {
         if (f->last[i] && max[i] > 0) {
             scale[i] = power_below(0.1 / max[i]);
         }
     }
-    for (int j = 0; j < n; j++) {
-        for (int p = f->matrix.start[j]; p < f->matrix.start[j + 1]; p++) {
-            f->matrix.value[p] = values[p] * scale[j] * scale[f->matrix.index[p]];
-        }
-    }
+    ruga_parallel_for(n, share_size(f), scale_values, &c);
 }
 
 ruga_status ruga_ldl_make_room(void** memory, size_t* capacity, size_t count, size_t size) {

@@ -24,6 +24,7 @@
 
 enum { TILE = RUGA_LDL_TILE };
 enum { SHARES = 4, CHUNK = 4096 }; // of a block's strips, for several threads; steps of a copy
+static const double small = 2e5;   // entries of a factor that one thread reads sooner than two share it
 
 // Four numbers wherever a double may stand.
 typedef double lane4 __attribute__((vector_size(32), aligned(8), may_alias));
@@ -415,6 +416,11 @@ static void add_handed_up(int begin, int end, int chunk, void* context) {
     }
 }
 
+// Shares out `count` items one by one, or where the factor is small none.
+static void share_out(pass* p, int count, ruga_parallel_body* body) {
+    ruga_parallel_for(count, p->ldl->symbolic.entries < small && count > 1 ? count : 1, body, p);
+}
+
 // The level at work becomes number k; returns its fronts, *blocks of the one with most.
 static int enter_level(pass* p, int k, int* blocks) {
     const ruga_ldl* f = p->ldl;
@@ -436,10 +442,10 @@ static void forward_top(pass* p) {
     ruga_parallel_for(f->top_count, CHUNK / 4, add_handed_up, p);
     for (int k = 0; k < f->level_count; k++) {
         int blocks, count = enter_level(p, k, &blocks);
-        for (int block = 0; block < blocks; block++) {
+        for (int block = 0; block < blocks || block == 0; block++) { // the first clears what is handed up
             p->strip = RUGA_LDL_BLOCK * block;
-            ruga_parallel_for(count, 1, forward_triangles, p);
-            ruga_parallel_for(p->pieces * count, 1, forward_pieces, p);
+            share_out(p, count, forward_triangles);
+            share_out(p, p->pieces * count, forward_pieces);
         }
         for (int i = 0; i < count; i++) {
             hand_up(p, p->level[i], f->gather + (size_t)i * (size_t)f->widest, NULL);
@@ -451,11 +457,11 @@ static void backward_top(pass* p) {
     for (int k = p->ldl->level_count - 1; k >= 0; k--) {
         int blocks, count = enter_level(p, k, &blocks);
         p->strip = 0;
-        ruga_parallel_for(count, 1, load_level, p);
+        share_out(p, count, load_level);
         for (int block = blocks - 1; block >= 0; block--) {
             p->strip = RUGA_LDL_BLOCK * block;
-            ruga_parallel_for(p->shares * count, 1, backward_strips, p);
-            ruga_parallel_for(count, 1, backward_triangles, p);
+            share_out(p, p->shares * count, backward_strips);
+            share_out(p, count, backward_triangles);
         }
     }
 }
@@ -485,10 +491,10 @@ static void solve_steps(ruga_ldl* f, bool absolute, const double* scale, const d
     const ruga_ldl_symbolic* s = &f->symbolic;
     pass p = {.ldl = f, .absolute = absolute, .x = f->answer, .scale = scale, .from = from, .to = to};
     ruga_parallel_for(s->n, CHUNK, load_steps, &p);
-    ruga_parallel_for(s->task_count, 1, forward_tasks, &p);
+    share_out(&p, s->task_count, forward_tasks);
     forward_top(&p);
     backward_top(&p);
-    ruga_parallel_for(s->task_count, 1, backward_tasks, &p);
+    share_out(&p, s->task_count, backward_tasks);
     ruga_parallel_for(s->n, CHUNK, store_steps, &p);
 }
 

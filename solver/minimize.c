@@ -19,8 +19,11 @@ double ruga_skin_residual(ruga_skin* skin, const double* projected, const ruga_s
 }
 
 // The energy's curvature is known only nearby: half an edge is as far as a quadratic model may be trusted.
-ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d) {
+ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d, double* move) {
     double largest = ruga_largest_move(skin->n, d), cap = 0.5 * skin->model->mean_edge;
+    if (move) {
+        *move = largest;
+    }
     if (!isfinite(largest)) {
         return ruga_fail(RUGA_LIBRARY, "the skin's linear system gave a result that is not finite");
     }

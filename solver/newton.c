@@ -58,7 +58,7 @@ static ruga_status solve(ruga_skin* skin, const double* projected, double* d) {
     for (int i = 0; i < skin->n; i++) {
         d[i] = -d[i];
     }
-    return ruga_skin_clean_direction(skin, d);
+    return ruga_skin_clean_direction(skin, d, NULL);
 }
 
 // Newton direction from a factor of the right inertia; *shifted tells whether the exact Hessian had the wrong one:
@@ -85,7 +85,7 @@ static ruga_status direction(ruga_skin* skin, const double* x, const double* pro
     if (skin->model->solver.linear == RUGA_LINEAR_MINRES) {
         RUGA_TRY(direction_minres(skin, x, projected, d, &good));
     }
-    return good ? ruga_skin_clean_direction(skin, d)
+    return good ? ruga_skin_clean_direction(skin, d, NULL)
                 : direction_direct(skin, x, projected, while_convex, d, shifted);
 }
 

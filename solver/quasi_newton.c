@@ -12,10 +12,9 @@
 #include "solver/vectors.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { PAIRS = 8, REFRESH = 24, SLOW = 480, MOST_IN_VAIN = 12, MAX_ITERATIONS = 3000 };
-enum { GRADIENT, PROJECTED, DIRECTION, OLD_PROJECTED, OLD_POSITION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
+enum { GRADIENT, PROJECTED, OLD_PROJECTED, DIRECTION, WORK, STEPS, DIFFERENCES = STEPS + PAIRS };
 
 typedef struct memory {
     int count, newest;           // pairs kept, slot of the newest
@@ -71,18 +70,17 @@ static ruga_status lbfgs_direction(ruga_skin* skin, const memory* m, const doubl
 
 // Keeps the pair of the step just made where its curvature is positive. Differences of projected gradients are as good
 // as those of gradients, since all steps are in the null space, and need no projection before a solve.
-static void remember(ruga_skin* skin, memory* m, const double* x, const double* projected) {
-    const double minus_one = -1;
+static void remember(ruga_skin* skin, memory* m, const double* old_projected, const double* projected) {
+    const double minus_one = -1, *d = ruga_skin_vector(skin, DIRECTION);
     int k = (m->newest + 1) % PAIRS;
     double *s = ruga_skin_vector(skin, STEPS + k), *y = ruga_skin_vector(skin, DIFFERENCES + k), product[PAIRS];
-    const double *old_x = ruga_skin_vector(skin, OLD_POSITION), *old_p = ruga_skin_vector(skin, OLD_PROJECTED);
-    ruga_add_vectors(skin->n, 1, &old_x, &minus_one, 1, x, s);
-    ruga_add_vectors(skin->n, 1, &old_p, &minus_one, 1, projected, y);
-    double sy = ruga_dot_product(skin->n, s, y);
-    if (!(sy > 1e-6 * m->step * fabs(ruga_dot_product(skin->n, s, old_p)))) {
+    ruga_add_vectors(skin->n, 0, NULL, NULL, m->step, d, s);
+    ruga_add_vectors(skin->n, 1, &old_projected, &minus_one, 1, projected, y);
+    ruga_dot_products(skin->n, 2, (const double* const[]){y, old_projected}, s, product);
+    if (!(product[0] > 1e-6 * m->step * fabs(product[1]))) {
         return;
     }
-    m->rho[k] = 1 / sy;
+    m->rho[k] = 1 / product[0];
     m->newest = k;
     m->count = m->count < PAIRS ? m->count + 1 : PAIRS;
     pairs list;
@@ -98,16 +96,14 @@ static ruga_status iterate(ruga_skin* skin, memory* m, double* x, double* gradie
                            ruga_skin_terms* terms, double* move) {
     double* d = ruga_skin_vector(skin, DIRECTION);
     RUGA_TRY(lbfgs_direction(skin, m, projected, d));
-    *move = ruga_largest_move(skin->n, d);
-    RUGA_TRY(ruga_skin_clean_direction(skin, d));
-    memcpy(ruga_skin_vector(skin, OLD_POSITION), x, (size_t)skin->n * sizeof *x);
-    memcpy(ruga_skin_vector(skin, OLD_PROJECTED), projected, (size_t)skin->n * sizeof *projected);
+    RUGA_TRY(ruga_skin_clean_direction(skin, d, move));
     return ruga_armijo_search(skin, d, x, terms, gradient, &m->step);
 }
 
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result) {
     double *gradient = ruga_skin_vector(skin, GRADIENT), *projected = ruga_skin_vector(skin, PROJECTED);
+    double* old_projected = ruga_skin_vector(skin, OLD_PROJECTED);
     memory m = {.newest = -1};
     double score = 0, move;
     int failures = 0, hand_over = SLOW, in_vain = 0; // renewals in a row that served one step only
@@ -118,6 +114,9 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
         RUGA_TRY(ruga_skin_factor_convex(skin, x));
     }
     for (int k = 0; k < MAX_ITERATIONS; k++, skin->work.iterations++) {
+        double* last = old_projected;
+        old_projected = projected;
+        projected = last;
         RUGA_TRY(ruga_skin_project(skin, gradient, projected));
         result->residual = ruga_skin_residual(skin, projected, &result->terms);
         if (result->residual <= target) {
@@ -144,7 +143,7 @@ ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolera
             continue;
         }
         if (m.step > 0) {
-            remember(skin, &m, x, projected);
+            remember(skin, &m, old_projected, projected);
         }
         RUGA_TRY(iterate(skin, &m, x, gradient, projected, &result->terms, &move));
         // A first step that is far too long or hardly taken: the old factor is of no use here.

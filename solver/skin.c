@@ -8,9 +8,9 @@
 #include "solver/skin.h"
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "core/progress.h"
 #include "core/vec3.h"
-#include "core/wide.h"
 
 #include <string.h>
 
@@ -397,14 +397,35 @@ static double add_weight(const ruga_skin* skin, const double* x, double* gradien
     return energy;
 }
 
-static double add_proximal(const ruga_skin* skin, const double* x, double* gradient) {
+enum { PROXIMAL_CHUNKS = 16 };
+typedef struct proximal {
+    const ruga_skin* skin;
+    const double* x;
+    double *gradient, energy[PROXIMAL_CHUNKS];
+} proximal;
+
+static void add_proximal_of(int begin, int end, int chunk, void* context) {
+    proximal* p = context;
+    const ruga_skin* skin = p->skin;
     double energy = 0;
-    for (int i = 0; i < skin->n; i++) {
-        double s = skin->proximal * skin->model->vertex_area[i / 3], d = x[i] - skin->anchor[i];
+    for (int i = 3 * begin; i < 3 * end; i++) {
+        double s = skin->proximal * skin->model->vertex_area[i / 3], d = p->x[i] - skin->anchor[i];
         energy += 0.5 * s * d * d;
-        if (gradient) {
-            gradient[i] += s * d;
+        if (p->gradient) {
+            p->gradient[i] += s * d;
         }
+    }
+    p->energy[chunk] = energy;
+}
+
+static double add_proximal(const ruga_skin* skin, const double* x, double* gradient) {
+    proximal p = {.skin = skin, .x = x, .gradient = gradient};
+    int vertices = skin->n / 3, size = ruga_chunk_count(vertices, PROXIMAL_CHUNKS);
+    double energy = 0;
+    size = size > 1024 ? size : 1024;
+    ruga_parallel_for(vertices, size, add_proximal_of, &p);
+    for (int c = 0; c < ruga_chunk_count(vertices, size); c++) {
+        energy += p.energy[c];
     }
     return energy;
 }
@@ -421,9 +442,8 @@ ruga_status ruga_skin_energy(ruga_skin* skin, const double* x, ruga_skin_terms* 
         terms->bending += part;
     }
     if (model->foundation.vertex_count) {
-        for (int i = 0; i < skin->n; i++) {
-            skin->displacement[i] = x[i] - skin->embedded[i];
-        }
+        const double minus_one = -1, *embedded = skin->embedded;
+        ruga_add_vectors(skin->n, 1, &embedded, &minus_one, 1, x, skin->displacement);
         terms->foundation = ruga_foundation_energy(&model->foundation, skin->displacement, gradient, &part);
         force_square += part;
     }

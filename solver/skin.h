@@ -119,10 +119,10 @@ ruga_status ruga_newton_minimize(ruga_skin* skin, double* x, double tolerance, b
 ruga_status ruga_quasi_newton_minimize(ruga_skin* skin, double* x, double tolerance, bool certify,
                                        ruga_skin_result* result);
 ruga_status ruga_paper_minimize(ruga_skin* skin, double* x, double tolerance, ruga_skin_result* result);
-// What they share. Residual of a projected gradient; a direction made finite and capped to half an edge; and the
+// What they share. Residual of a projected gradient; a finite direction, of largest `move` if not NULL, capped to half an edge; the
 // certificate of a converged state: *done with the outcome in result, or a step off the saddle.
 double ruga_skin_residual(ruga_skin* skin, const double* projected, const ruga_skin_terms* terms);
-ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d);
+ruga_status ruga_skin_clean_direction(const ruga_skin* skin, double* d, double* move);
 // A saddle so shallow that no step leaves it is approached more closely first: *target, the residual that counts as
 // converged, is lowered.
 ruga_status ruga_skin_certify(ruga_skin* skin, double* x, bool certify, double tolerance, double* target,

@@ -313,7 +313,8 @@ static void before_it_comes_there_is_no_crease(void** state) {
     for (kind which = MOTION; which < KINDS; which++) {
         scene with, without;
         make(which, 3, never, &with);
-        with.s.def.solver.tolerance = which < QUASISTATIC ? 1e-9 : 1e-7;
+        // With an interior residuals have a round-off of some 3e-8 here: what ends near that is another equilibrium.
+        with.s.def.solver.tolerance = which < QUASISTATIC ? 1e-9 : 1e-6;
         with.s.handle[1].translate[2] = 0.01 * with.s.length; // lifted: pressed, it has several equilibria
         with.s.handle[1].translate[0] = 0;
         scene_build(&with.s);
@@ -335,7 +336,7 @@ static void before_it_comes_there_is_no_crease(void** state) {
             moved = fmax(moved, fabs(x - sheet->position[i]));
         }
         print_message("kind %d: off by %.2g of %.2g m\n", which, off, moved);
-        assert_true(off <= moved * (which <= SPRINGS ? 0 : which < QUASISTATIC ? 1e-6 : 1e-3));
+        assert_true(off <= moved * (which <= SPRINGS ? 0 : 1e-6));
         assert_true(moved > 1e-5);
         scene_free(&with.s);
         scene_free(&without.s);
