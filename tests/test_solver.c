@@ -558,8 +558,53 @@ static void any_failed_allocation_is_a_status_and_leaks_nothing(void** state) {
     }
 }
 
+// Sums of several vectors against one at a time, for lengths about a piece and a chunk; the same bits on two threads.
+static void sums_of_vectors_are_those_of_each(void** state) {
+    (void)state;
+    enum { COUNT = 5, LONGEST = 70001 };
+    static const int length[] = {1, 511, 512, 513, 2048, 2049, 4100, LONGEST};
+    double *data = malloc((COUNT + 3) * sizeof *data * LONGEST), product[2][COUNT], factor[COUNT];
+    double *w = data + (ptrdiff_t)COUNT * LONGEST, *sum[2] = {w + LONGEST, w + 2 * LONGEST};
+    const double* v[COUNT];
+    ruga_random random = {3};
+    for (int i = 0; i < (COUNT + 1) * LONGEST; i++) {
+        data[i] = 2 * ruga_random_uniform(&random) - 1;
+    }
+    for (int k = 0; k < COUNT; k++) {
+        v[k] = data + (ptrdiff_t)k * LONGEST;
+        factor[k] = ruga_random_uniform(&random);
+    }
+    for (size_t c = 0; c < sizeof length / sizeof length[0]; c++) {
+        int n = length[c];
+        for (int threads = 1; threads <= 2; threads++) {
+            ruga_set_threads(threads);
+            ruga_dot_products(n, COUNT, v, w, product[threads - 1]);
+            ruga_add_vectors(n, COUNT, v, factor, -2, w, sum[threads - 1]);
+        }
+        ruga_set_threads(0);
+        assert_memory_equal(product[0], product[1], sizeof product[0]);
+        assert_memory_equal(sum[0], sum[1], (size_t)n * sizeof *w);
+        for (int k = 0; k < COUNT; k++) {
+            double one = 0;
+            for (int i = 0; i < n; i++) {
+                one += v[k][i] * w[i];
+            }
+            assert_near(product[0][k], one, 1e-13 * n);
+        }
+        for (int i = 0; i < n; i++) {
+            double one = w[i];
+            for (int k = 0; k < COUNT; k++) {
+                one += factor[k] * v[k][i];
+            }
+            assert_near(sum[0][i], -2 * one, 1e-14);
+        }
+    }
+    free(data);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sums_of_vectors_are_those_of_each),
         cmocka_unit_test(gradient_is_the_centred_difference_of_the_energy_at_second_order),
         cmocka_unit_test(stiffness_is_the_centred_difference_of_the_gradient_at_second_order),
         cmocka_unit_test(restore_meets_the_constraints_with_the_least_move),
