@@ -33,7 +33,8 @@ size_t ruga_ldl_symbolic_bytes(const ruga_ldl_symbolic* symbolic) {
     size_t count = (size_t)symbolic->count;
     size_t entries = symbolic->entry_start ? (size_t)symbolic->entry_start[count] : 0;
     size_t rows = symbolic->row_start ? symbolic->row_start[count] : 0;
-    return ((size_t)symbolic->n + 3 * count + 3 * entries + 3 * rows) * sizeof(int) +
+    size_t tasks = (size_t)symbolic->task_count;
+    return ((size_t)symbolic->n + 3 * count + 2 * tasks + 3 * entries + 3 * rows) * sizeof(int) +
            count * (sizeof(size_t) + sizeof(bool));
 }
 
