@@ -243,12 +243,29 @@ static ruga_status surface_force(ruga_interior* in, const double* x, const doubl
     return RUGA_OK;
 }
 
-// r(q) at the skin's minimum, its norm free of the held rows' part, and the reference force.
+// z = preconditioner r, with A z = 0; r loses A^T mu, what the handles bear, with mu from the same system. Near the solution that is
+// nearly all of r, and its round-off would drown the rest (Gould, Hribar and Nocedal 2001, the residual update).
+static ruga_status precondition(ruga_interior* in, double* r, double* z) {
+    double *side = interior_vector(in, SIDE), *solution = interior_vector(in, SOLUTION);
+    const ruga_rows* rows = &in->model->rows;
+    memcpy(side, r, (size_t)in->n * sizeof *side);
+    memset(side + in->n, 0, (size_t)in->m * sizeof *side);
+    RUGA_TRY(ruga_factor_solve(in->factor, side, solution));
+    for (int k = 0; k < in->m; k++) {
+        for (int p = rows->start[k]; p < rows->start[k + 1]; p++) {
+            r[3 * rows->node[p] + rows->axis[k]] -= rows->weight[p] * solution[in->n + k];
+        }
+    }
+    memcpy(z, solution, (size_t)in->n * sizeof *z);
+    return RUGA_OK;
+}
+
+// r(q) at the skin's minimum, free of the held rows' part, and its norm by the reference force.
 static ruga_status residual(ruga_interior* in, const double* q, const double* x, const double* embedded,
                             ruga_interior_result* result, double* total, double* r) {
     ruga_skin* skin = in->skin;
     double *gradient = surface_vector(in, GRADIENT), *t = surface_vector(in, PRESS);
-    double *side = interior_vector(in, SIDE), *z = interior_vector(in, SOLUTION), force_square;
+    double *side = interior_vector(in, SIDE), *z = interior_vector(in, CG_Z), force_square;
     RUGA_TRY(ruga_skin_energy(skin, x, &result->skin.terms, gradient));
     RUGA_TRY(surface_force(in, x, embedded, gradient, t));
     RUGA_TRY(energy_of_q(in, q, result, total, r, &force_square));
@@ -259,18 +276,9 @@ static ruga_status residual(ruga_interior* in, const double* q, const double* x,
     for (int i = 0; i < in->n; i++) {
         r[i] += side[i];
     }
-    memcpy(side, r, (size_t)in->n * sizeof *side);
-    memset(side + in->n, 0, (size_t)in->m * sizeof *side);
-    RUGA_TRY(ruga_factor_solve(in->factor, side, z));
-    // r - A^T mu, with mu from the preconditioner's system.
-    const ruga_rows* rows = &in->model->rows;
-    for (int k = 0; k < in->m; k++) {
-        for (int p = rows->start[k]; p < rows->start[k + 1]; p++) {
-            side[3 * rows->node[p] + rows->axis[k]] -= rows->weight[p] * z[in->n + k];
-        }
-    }
+    RUGA_TRY(precondition(in, r, z));
     double floor = ruga_model_force_floor(in->model);
-    result->residual = sqrt(ruga_dot_product(in->n, side, side)) / fmax(sqrt(force_square), floor);
+    result->residual = sqrt(ruga_dot_product(in->n, r, r)) / fmax(sqrt(force_square), floor);
     return RUGA_OK;
 }
 
@@ -391,16 +399,6 @@ static ruga_status apply_reduced(ruga_interior* in, const double* dq, double* y)
     RUGA_TRY(skin_response(in, dq, move, image));
     multiply_pattern(in, in->stiffness, dq, y);
     ruga_lattice_embed_transpose(&in->model->lattice, image, y);
-    return RUGA_OK;
-}
-
-// z = preconditioner r, with A z = 0
-static ruga_status precondition(ruga_interior* in, const double* r, double* z) {
-    double *side = interior_vector(in, SIDE), *solution = interior_vector(in, SOLUTION);
-    memcpy(side, r, (size_t)in->n * sizeof *side);
-    memset(side + in->n, 0, (size_t)in->m * sizeof *side);
-    RUGA_TRY(ruga_factor_solve(in->factor, side, solution));
-    memcpy(z, solution, (size_t)in->n * sizeof *z);
     return RUGA_OK;
 }
 
