@@ -20,6 +20,9 @@ enum { MAX_NEWTON = 60, MAX_CG = 80, STALE_CG = 12, MAX_BACKTRACKS = 20 };
 enum { RESIDUAL, DIRECTION, CG_R, CG_Z, CG_P, CG_AP, SIDE, SOLUTION, TRIAL_Q, ELASTIC }; // interior vectors
 enum { GRADIENT, PRESS, BU, MOVE, IMAGE, TRIAL_X };                                      // surface vectors
 
+// A chord step serves where it takes the residual down to this part.
+static const double CHORD = 0.25;
+
 static double* interior_vector(ruga_interior* in, int i) {
     return in->memory + (size_t)i * (size_t)(in->n + in->m);
 }
@@ -527,6 +530,32 @@ static ruga_status solve_skin(ruga_interior* in, double tolerance, double* x, co
     return RUGA_OK;
 }
 
+// Steps by the predictor's factor alone, which cost a residual each and need no matrix, while they serve.
+static ruga_status take_chord_steps(ruga_interior* in, double tolerance, double* q, double* x, double* embedded,
+                                    ruga_interior_result* result) {
+    double *r = interior_vector(in, RESIDUAL), *before_q = interior_vector(in, TRIAL_Q), before = INFINITY, total;
+    memcpy(before_q, q, (size_t)in->n * sizeof *q);
+    for (;; result->iterations++) {
+        RUGA_TRY(solve_skin(in, tolerance, x, embedded, result));
+        RUGA_TRY(residual(in, q, x, embedded, result, &total, r));
+        if (!(result->residual <= CHORD * before)) {
+            memcpy(q, before_q, (size_t)in->n * sizeof *q);
+            ruga_lattice_embed(&in->model->lattice, q, embedded);
+            return RUGA_OK;
+        }
+        result->converged = result->residual <= tolerance;
+        if (result->converged) {
+            return RUGA_OK;
+        }
+        before = result->residual;
+        memcpy(before_q, q, (size_t)in->n * sizeof *q);
+        for (int i = 0; i < in->n; i++) {
+            q[i] -= interior_vector(in, CG_Z)[i];
+        }
+        ruga_lattice_embed(&in->model->lattice, q, embedded);
+    }
+}
+
 ruga_status ruga_interior_minimize(ruga_interior* in, double tolerance, double* q, double* x, double* embedded,
                                    ruga_interior_result* result) {
     double *r = interior_vector(in, RESIDUAL), *dq = interior_vector(in, DIRECTION), total;
@@ -534,6 +563,12 @@ ruga_status ruga_interior_minimize(ruga_interior* in, double tolerance, double* 
     // The predictor's factor, of where the step began, serves as well where a product costs next to nothing. With a
     // skin to solve for, each product is a solve with the skin's matrix, and a fresh factor saves some.
     int products = in->model->solves_skin ? MAX_CG : 0;
+    if (!in->model->solves_skin) {
+        RUGA_TRY(take_chord_steps(in, tolerance, q, x, embedded, result));
+        if (result->converged) {
+            return RUGA_OK;
+        }
+    }
     for (int k = 0; k < MAX_NEWTON; k++, result->iterations++) {
         if (products > STALE_CG || k % 6 == 5) {
             RUGA_TRY(factor_preconditioner(in, q, x));
