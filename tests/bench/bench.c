@@ -11,7 +11,7 @@
 //     bench [--frames N] [--slow-frames N] [--methods A,B] [--threads N,M] [--per-frame] [--json FILE]
 //           [--plot DIR] [--residuals FILE.csv] [--relaxation SECONDS] UNKNOWNS[:CLUSTERS] ...
 // Large cases have fewer frames unless told, and what takes many minutes is left out unless it is named: the published
-// method above 30,000 unknowns or 1,000 clusters, Newton with factorisations.
+// method above 30,000 unknowns, Newton with factorisations.
 // --plot draws residual against iteration of each method's worst frame; --residuals writes residual, energy
 // and work spent at each iteration.
 #include "core/memory.h"
@@ -31,7 +31,7 @@
 #include <string.h>
 
 enum { WARM = 5, MAX_FRAMES = 20, METHODS = 5, MAX_CASES = 16, TRACE = 100000, TIMINGS = 3 };
-enum { LAG_MAX = 30000, PAPER_CLUSTERS = 1000 }; // up to which the lag is measured, and `paper` runs unnamed
+enum { LAG_MAX = 30000 }; // unknowns up to which the lag is measured
 enum { QUASI_NEWTON, DAMPED, PAPER = METHODS - 1 };
 
 typedef struct variant {
@@ -466,7 +466,7 @@ done:
 
 // ---- one case ------------------------------------------------------------------------------------------
 
-static bool is_listed(const char* list, const variant* v, int unknowns, int clusters) {
+static bool is_listed(const char* list, const variant* v, int unknowns) {
     const char* name = v->name;
     size_t length = strlen(name);
     for (; list && *list; list += *list == ',') {
@@ -475,7 +475,7 @@ static bool is_listed(const char* list, const variant* v, int unknowns, int clus
         }
         list += strcspn(list, ",");
     }
-    return !list && unknowns <= v->most && (v != &variants[PAPER] || clusters <= PAPER_CLUSTERS);
+    return !list && unknowns <= v->most;
 }
 
 static ruga_status create(bench* b, int unknowns, int clusters, const options* o) {
@@ -538,7 +538,7 @@ static ruga_status bench_case(int unknowns, int clusters, options* o) {
     for (int motion = 0; motion < 2; motion++) {
         RUGA_TRY_DONE(RUGA_NEW(start[motion], ruga_state_restart_size(b.model)));
         RUGA_TRY_DONE(RUGA_NEW(next[motion], ruga_state_restart_size(b.model)));
-        if (motion == 0 || is_listed(o->methods, &variants[DAMPED], unknowns, clusters)) {
+        if (motion == 0 || is_listed(o->methods, &variants[DAMPED], unknowns)) {
             RUGA_TRY_DONE(warm(&b, motion ? RUGA_SKIN_DAMPED : RUGA_SKIN_STATIC, rest, start[motion]));
         }
     }
@@ -556,7 +556,7 @@ static ruga_status bench_case(int unknowns, int clusters, options* o) {
         for (int v = count - 1; v >= 0; v--) {
             const variant* kind = runs[v].variant;
             bool unseen = (kind->slow && k >= o->slow_frames) || (v >= METHODS && kind > &variants[DAMPED]);
-            if (unseen || !is_listed(o->methods, kind, unknowns, clusters)) {
+            if (unseen || !is_listed(o->methods, kind, unknowns)) {
                 continue;
             }
             RUGA_TRY_DONE(run_frame(&b, &runs[v], start[kind->motion == RUGA_SKIN_DAMPED], k, o));
