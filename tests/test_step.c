@@ -190,6 +190,7 @@ static void handles_hold_at_tight_tolerances(void** state) {
     scene_build(&s);
     const ruga_rows* rows = &s.model->rows;
     const ruga_interior* in = s.state->interior;
+    assert_true(rows->count > 0);
     for (int k = 0; k < 2; k++) {
         step_frames(&s, 1);
         double gap = 0;
